@@ -29,6 +29,8 @@ from piezo_sym.expressions.tree import (
     Pow,
     Sym,
     children,
+    decided,
+    first_choice,
     names,
     rebuild,
     walk,
@@ -64,7 +66,7 @@ def antiderivative(
         if len(known) == len(parts):
             return add(*known)
     plain = compared(node)
-    condition = _choice(plain)
+    condition = first_choice(plain)
     if condition is None:
         return otherwise(node, name)
     return _by_branches(plain, condition, name, otherwise, positive)
@@ -77,10 +79,10 @@ def slope(energy: Expr, name: str) -> Expr:
     if isinstance(energy, Add):
         return add(*(slope(term, name) for term in energy.terms))
     plain = compared(energy)
-    condition = _choice(plain)
+    condition = first_choice(plain)
     if condition is None:
         return derivative(plain, name)
-    then, other = (slope(_decided(plain, condition, holds=h), name) for h in (True, False))
+    then, other = (slope(decided(plain, {condition: h}), name) for h in (True, False))
     return then if then == other else If(then, condition, other)
 
 
@@ -90,7 +92,7 @@ def _by_branches(
     """Return the antiderivative of a choice from those of what it chooses between."""
     if sum(1 for _ in walk(node)) > MAX_PARTS or _pieces(node) > MOST_PIECES:
         return None
-    parts = (_decided(node, condition, holds=holds) for holds in (True, False))
+    parts = (decided(node, {condition: holds}) for holds in (True, False))
     then, other = (antiderivative(part, name, otherwise, positive) for part in parts)
     if then is None or other is None or _is_long(then) or _is_long(other):
         return None
@@ -114,20 +116,6 @@ def _pieces(node: Node) -> int:
 
 def _is_long(node: Node) -> bool:
     return next(islice(walk(node), MAX_PARTS, None), None) is not None
-
-
-def _choice(node: Node) -> Cmp | None:
-    """Return the first comparison of a tree's choices, one without choices of its own."""
-    if isinstance(node, If):
-        return _choice(node.condition) or node.condition
-    return next((found for part in children(node) if (found := _choice(part))), None)
-
-
-def _decided(node: Expr, condition: Cmp, *, holds: bool) -> Expr:
-    """Return a tree in which a comparison holds, or does not."""
-    if isinstance(node, If) and node.condition == condition:
-        return _decided(node.then if holds else node.other, condition, holds=holds)
-    return rebuild(node, lambda part: _decided(part, condition, holds=holds))
 
 
 def _settled(node: Expr, positive: Collection[str]) -> Expr:

@@ -194,6 +194,23 @@ def rebuild(node: Expr, change: Callable[[Expr], Expr]) -> Expr:
     return type(node)(*(changed(getattr(node, field)) for field in node.__slots__))
 
 
+def first_choice(node: Node) -> Cmp | None:
+    """Return the comparison that is decided first where a tree is evaluated, outside all branches.
+
+    What guards a branch is decided before anything inside it.
+    """
+    if isinstance(node, If):
+        return first_choice(node.condition) or node.condition
+    return next(filter(None, map(first_choice, children(node))), None)
+
+
+def decided(node: Expr, known: Mapping[Cmp, bool]) -> Expr:
+    """Return a tree with the choices taken whose comparison is `known`."""
+    if isinstance(node, If) and node.condition in known:
+        return decided(node.then if known[node.condition] else node.other, known)
+    return rebuild(node, lambda part: decided(part, known))
+
+
 def replace(node: Expr, mapping: Mapping[str, Expr]) -> Expr:
     """Return `node` with each name in `mapping` replaced by its tree, all at once."""
     if isinstance(node, Sym):

@@ -25,7 +25,8 @@ from piezo_sym.expressions.tree import (
     Node,
     Num,
     Pow,
-    children,
+    decided,
+    first_choice,
     knots,
     rebuild,
     walk,
@@ -136,13 +137,6 @@ def choices(node: Node) -> tuple[Cmp, ...]:
     return tuple(dict.fromkeys(n.condition for n in walk(node) if isinstance(n, If)))
 
 
-def decided(node: Expr, known: dict[Cmp, bool]) -> Expr:
-    """Return a law with the choices taken whose comparison is `known`."""
-    if isinstance(node, If) and node.condition in known:
-        return decided(node.then if known[node.condition] else node.other, known)
-    return rebuild(node, lambda part: decided(part, known))
-
-
 def opposite(condition: Cmp) -> Cmp:
     """Return the comparison that holds where `condition` does not."""
     return Cmp(OPPOSITE[condition.op], condition.left, condition.right)
@@ -150,7 +144,7 @@ def opposite(condition: Cmp) -> Cmp:
 
 def _pieces(law: Expr, path: tuple[Cmp, ...]) -> Iterator[Branch]:
     """Yield the branches of a law below the comparisons decided so far."""
-    choice = _next_choice(law)
+    choice = first_choice(law)
     if choice is None:
         yield Branch(path, law)
         return
@@ -158,21 +152,6 @@ def _pieces(law: Expr, path: tuple[Cmp, ...]) -> Iterator[Branch]:
         taken = decided(law, {choice: holds, opposite(choice): not holds})
         condition = choice if holds else opposite(choice)
         yield from _pieces(taken, (*path, condition))
-
-
-def _next_choice(law: Expr) -> Cmp | None:
-    """Return the comparison that is decided first where a law is evaluated.
-
-    It is outside all branches: what guards a branch is decided before anything inside it.
-    """
-    if isinstance(law, If):
-        return _first_choice(children(law.condition)) or law.condition
-    return _first_choice(children(law))
-
-
-def _first_choice(parts: Iterable[Node]) -> Cmp | None:
-    found = (_next_choice(part) for part in parts if not isinstance(part, Cmp))
-    return next((choice for choice in found if choice is not None), None)
 
 
 def partial(node: Node) -> Iterator[Cmp]:

@@ -30,10 +30,11 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     children,
+    decided,
     names,
     walk,
 )
-from piezo_sym.proofs.branches import decided, opposite
+from piezo_sym.proofs.branches import opposite
 from piezo_sym.proofs.signs.reduce import Positive, factored, reductions, settings
 from piezo_sym.proofs.signs.shift import rational_at
 
