@@ -7,7 +7,7 @@ Input: a `Probe`, and numbers for parameters, inputs and states (floats are rati
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, final
@@ -16,7 +16,8 @@ from flint import arb, ctx, fmpq
 
 from piezo_sym.expressions.exact_eval import TooCloseError, evaluated, exact, holds
 from piezo_sym.expressions.tree import Cmp, Expr, LaneSum, names
-from piezo_sym.falsify.claims import Claim, summed
+from piezo_sym.falsify.claims import Claim
+from piezo_sym.falsify.floats import Row
 from piezo_sym.falsify.probe import Probe
 from piezo_sym.falsify.space import Array, Space
 from piezo_sym.spec.tables import conditions
@@ -53,11 +54,10 @@ class Exact:
             return None
         if claim.id == "welldef":
             return "a law has no value" if at.undefined(claim.element) else None
-        with ctx.workprec(BITS):
-            if claim.says(at):
-                for name, value, _, strict in claim.at(at):
-                    if value < 0 or (strict and value == 0):
-                        return f"{name} = {text(value)}"
+        for said in claim.says if all(map(at.holds, claim.where)) else ():
+            for value in at.values([(said.value, said.bank)]):
+                if value < 0 or (said.strict and value == 0):
+                    return f"{said.name} = {text(value)}"
         return None
 
 
@@ -76,26 +76,20 @@ class Point:
         """Return the lanes of a bank; without a bank, the first."""
         return self._lanes[: self.counts[bank] if bank else 1]
 
-    def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
-        """Return the values of a quantity, each with the size 0, for nothing is rounded."""
-        rows = self.probe.of(what, name)
+    def values(self, rows: Iterable[Row]) -> list[Any]:
+        """Return the values of trees, one per lane of each."""
         with ctx.workprec(BITS):
-            found = [lane.told(tree) for tree, bank in rows for lane in self.lanes(bank)]
-        return [(value, 0) for value in found or [NAN]]
-
-    def total(self, what: str) -> tuple[Any, Any]:
-        """Return the sum of a quantity over all elements."""
-        return summed(self.get(what, ""))
+            return [lane.told(tree) for tree, bank in rows for lane in self.lanes(bank)]
 
     @cached_property
     def inside(self) -> bool | None:
         """Whether the point is in the domain; None if it cannot be told."""
         if max(self.counts.values(), default=0) > MOST_LANES:
             return None
-        told = {self._holds(condition) for condition in self.system.conditions}
+        told = {self.holds(condition) for condition in self.system.conditions}
         return False if False in told else None if None in told else True
 
-    def _holds(self, condition: Cmp) -> bool | None:
+    def holds(self, condition: Cmp) -> bool | None:
         """Return whether a condition holds, in every lane; None if it cannot be told."""
         bank = next(filter(None, map(self.bank, names(condition))), None)
         try:

@@ -67,13 +67,13 @@ class Floats(dict[Expr, Approx]):
 
     Parameters
     ----------
-    given : the values of names.
+    given : the value of a name, or None.
     defined : what other names stand for.
     counts : the size of each bank.
     """
 
     def __init__(
-        self, given: Mapping[str, Any], defined: Mapping[str, Row], counts: Mapping[str, int]
+        self, given: Callable[[str], Any], defined: Mapping[str, Row], counts: Mapping[str, int]
     ) -> None:
         super().__init__()
         self.given, self.defined, self.counts = given, defined, counts
@@ -88,12 +88,13 @@ class Floats(dict[Expr, Approx]):
             case Num(number):
                 return _plain(np.float64(number))
             case Sym(name):
-                known = name in self.given
-                return _plain(self.given[name] if known else self[self.defined[name][0]].value)
+                known = self.given(name)
+                return _plain(self[self.defined[name][0]].value if known is None else known)
             case LaneSum(arg, bank):
-                own = self[arg].value
-                shape = self.counts[bank], *np.shape(own)[-1:]
-                return _plain(np.broadcast_to(own, shape).sum(axis=0))
+                own = self[arg]
+                shape = self.counts[bank], *np.shape(own.value)[-1:]
+                both = (np.broadcast_to(part, shape).sum(axis=0) for part in (own.value, own.size))
+                return Approx(*both)
             case Neg(arg):
                 inner = self[arg]
                 return Approx(-inner.value, inner.size, inner.lost)

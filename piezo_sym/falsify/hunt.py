@@ -67,11 +67,11 @@ class Track:
     def see(self, kind: str, seen: Seen) -> None:
         """Evaluate the claim at points inside the domain."""
         with np.errstate(all="ignore"):
-            says = np.broadcast_to(self.claim.says(seen), seen.points.shape[1:])
+            says = seen.holds(self.claim.where)
             self.points += int(says.sum())
             if self.claim.id == "welldef":
                 key = np.where(seen.holed(self.claim.element), -1.0, 1.0)
-            elif self.claim.numbers:
+            elif self.claim.says:
                 key = self._least(seen, says)
             else:
                 return
@@ -81,8 +81,8 @@ class Track:
     def _least(self, seen: Seen, says: Mask) -> Array:
         """Return the least value of the claim over its scale, 2 where it does not apply."""
         least: Array = np.full(says.shape, 2.0)
-        for _, value, scale, strict in self.claim.at(seen):
-            value, scale = np.asarray(value, dtype=float), np.asarray(scale, dtype=float)
+        for said in self.claim.says:
+            value, scale = seen.of(said.value).value, seen.of(said.scale).size
             if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
                 continue
             ratio = np.clip(value / scale, -1, 1)
@@ -90,7 +90,8 @@ class Track:
             ratio = np.where(np.isnan(ratio), told, ratio)
             if not self.claim.climbs:
                 ratio = np.where(ratio < -TOLERANCE, ratio, 1)
-            least = np.minimum(least, np.where(value == 0, ZERO if strict else 2, ratio))
+            ratio = np.where(value == 0, ZERO if said.strict else 2, ratio)
+            least = np.minimum(least, np.atleast_2d(ratio).min(axis=0))
         return np.where(says, least, 2)
 
     def _keep(self, kind: str, seen: Seen, key: Array) -> None:
@@ -119,7 +120,7 @@ class Hunt:
         sizes = {bank: getattr(spec, f"{bank}_count") for bank in module.BANKS}
         self.spec = Space(module, probe, sizes)
         self.space = Space(module, probe, dict.fromkeys(sizes, LANES))
-        found = (claim_of(iphs, *row) for row in claims)
+        found = (claim_of(probe, *row) for row in claims)
         self.wanted = min(points, self.space.most)
         self.tracks = [Track(claim) for claim in found if claim]
         trees = [condition.tree for condition in conditions(iphs.model)]
@@ -145,16 +146,16 @@ class Hunt:
     def _see(self, kind: str, space: Space, points: Array) -> None:
         seen = space.at(points)
         for track in self.tracks:
-            rest = track.claim.rest
-            if rest is None:
+            zero, equal = track.claim.zero, track.claim.equal
+            if not (zero or equal):
                 track.see(kind, seen)
                 continue
             changed, columns = points.copy(), space.columns_of
-            for name in rest[0]:
+            for name in zero:
                 changed[columns[name]] = 0
-            for name in rest[1]:
-                changed[columns[name]] = points[columns[rest[1][0]]]
-            bound = self.conditioned.isdisjoint({*rest[0], *rest[1][1:]})
+            for name in equal:
+                changed[columns[name]] = points[columns[equal[0]]]
+            bound = self.conditioned.isdisjoint({*zero, *equal[1:]})
             track.see(kind, space.at(changed if bound else self.draw.inside(changed)))
 
     def _blocks(self) -> Iterator[tuple[str, Space, Array]]:
@@ -198,12 +199,12 @@ class Hunt:
     def _judged(self, track: Track, exact: Exact) -> Attack:
         """Return what became of a row after its suspicious points were evaluated exactly."""
         claim, rounding = track.claim, None
-        most = CHECKED if claim.numbers else KEPT
+        most = CHECKED if claim.says else KEPT
         for key, space, point in chain(*(worst[:most] for worst in track.worst.values())):
             value = exact.broken(claim, space, point) if key < 0 else None
             if value:
                 raise self._contradiction(claim, value, space.words(point))
-            if key < ZERO and claim.numbers and not rounding:
+            if key < ZERO and claim.says and not rounding:
                 plain = not space.at(point[:, None]).out_of_range[0]
                 rounding = (space, point) if plain else None  # an underflow is not reported
         if claim.id == "continuous":

@@ -143,9 +143,9 @@ def _narrowed(
 
 def _watched(claim: Claim, at: Point) -> list[Any]:
     """Return what jumps if a law does: its values, or all rates where the law is a store's."""
-    kinds = ("output", "temperature", "conductance")
-    own = next((what for what in kinds if at.probe.of(what, claim.element)), "rate")
-    return [value for value, _ in at.get(own, claim.element if own != "rate" else "")]
+    kinds = [(what, claim.element) for what in ("output", "temperature", "conductance")]
+    own = [at.probe.laws[key] for key in kinds if key in at.probe.laws]
+    return at.values(own[:1] or [r for n, r in at.probe.defined.items() if n.startswith("rate ")])
 
 
 def _gap(one: Values, other: Values) -> Fraction:

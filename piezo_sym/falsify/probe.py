@@ -74,25 +74,28 @@ class Probe:
     Attributes
     ----------
     iphs : the system.
-    defined : what each name stands for.
+    defined : what each name stands for; among them, with a space in it, what functions of the
+        module give: the heat and the production of a process, the rate of a state, the temperature
+        of a body.
     laws : by what they are and whose: output and effort of a process, conductance, temperature and
         slope of a body, costate, ratio; of the element "" what the junction divides by.
-    rows : by what they are and whose: heat, production, rate, temperature, input.
     edges : where laws may be wrong.
     """
 
     iphs: IPHS
     defined: Mapping[str, Row]
     laws: Mapping[tuple[str, str], Row]
-    rows: Mapping[tuple[str, str], Row]
     edges: tuple[Edge, ...]
 
-    def of(self, what: str, name: str) -> list[Row]:
-        """Return the rows of a quantity; without a name, those of all that have it."""
-        if name:
-            row = self.laws.get((what, name)) or self.rows.get((what, name))
-            return [row] if row else []
-        return [row for (kind, _), row in {**self.laws, **self.rows}.items() if kind == what]
+    def law(self, what: str, element: str) -> Row:
+        """Return a law, written out: what a name stands for, not the name."""
+        return self.written(self.laws[what, element])
+
+    @cached_property
+    def produced(self) -> Expr:
+        """The entropy that all processes produce."""
+        rows = ((n, bank) for n, (_, bank) in self.defined.items() if n.startswith("production "))
+        return add(*(LaneSum(Sym(name), bank) if bank else Sym(name) for name, bank in rows))
 
     def of_element(self, element: str) -> list[Row]:
         """Return the laws of an element, written out: what a name stands for, not the name."""
@@ -164,7 +167,7 @@ def probe_of(iphs: IPHS) -> Probe:
     most = max(100, MOST_EDGES * 100 // max(100, len(defined)))
     edges = _varied(dict.fromkeys(e for e in found if not isinstance(e.tree, Num)), most)
     edges = tuple(Edge(e.tree, e.kink, bank_of(e.tree, q.lanes)) for e in edges)
-    return Probe(iphs, defined, laws, dict(_rows(q)), edges)
+    return Probe(iphs, {**defined, **dict(_rows(q))}, laws, edges)
 
 
 def _varied(found: Iterable[Edge], most: int) -> tuple[Edge, ...]:
@@ -179,17 +182,22 @@ def _varied(found: Iterable[Edge], most: int) -> tuple[Edge, ...]:
     return tuple(kept[:most])
 
 
-#: What the rows of a function of the module are.
-ROWS = {"heat": "heat", "entropy_production": "production", "rhs": "rate"}
+#: What the rows of a function of the module are, and of which of its records.
+RESULTS = {
+    "heat": ("heat", "PROCESSES"),
+    "entropy_production": ("production", "PROCESSES"),
+    "rhs": ("rate", "STATES"),
+    "temperatures": ("temperature", "BODIES"),
+}
 
 
-def _rows(q: Quantities) -> Iterator[tuple[tuple[str, str], Row]]:
-    """Yield the rows of the module's functions, and inputs."""
+def _rows(q: Quantities) -> Iterator[tuple[str, Row]]:
+    """Yield the rows of the module's functions."""
     for function in functions_of(q):
-        for row in function.rows if function.name in ROWS else ():
-            yield (ROWS[function.name], row.slot.label), (row.value, row.slot.bank)
-    for name in q.iphs.model.inputs:
-        yield ("input", name), (Sym(name), None)
+        if function.name in RESULTS:
+            what, _ = RESULTS[function.name]
+            for row in function.rows:
+                yield f"{what} {row.slot.label}", (row.value, row.slot.bank)
 
 
 def _laws(q: Quantities) -> Iterator[tuple[tuple[str, str], Expr]]:

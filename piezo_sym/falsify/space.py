@@ -16,11 +16,10 @@ from typing import Any, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
-from piezo_sym.expressions.tree import Cmp, Num, Sym
+from piezo_sym.expressions.tree import Cmp, Expr, Num, Sym
 from piezo_sym.expressions.units import parse_unit
-from piezo_sym.falsify.claims import summed
-from piezo_sym.falsify.floats import Approx, Floats
-from piezo_sym.falsify.probe import Probe
+from piezo_sym.falsify.floats import COMPARED, Approx, Floats
+from piezo_sym.falsify.probe import RESULTS, Probe
 from piezo_sym.spec.tables import conditions, greater
 
 Array = npt.NDArray[np.float64]
@@ -121,6 +120,11 @@ class Space:
         }
 
     @cached_property
+    def functions(self) -> Mapping[str, tuple[str, str]]:
+        """By what it gives, each function of the module whose rows have names, and its records."""
+        return {what: (function, table) for function, (what, table) in RESULTS.items()}
+
+    @cached_property
     def kinks(self) -> Mask:
         """Which rows of the edges are kinks."""
         edges = self.probe.edges
@@ -178,8 +182,6 @@ class Seen:
     def __init__(self, space: Space, points: Array) -> None:
         self.space = space
         self.points = points
-        self._totals: dict[str, tuple[Any, Any]] = {}
-        self._laws: dict[tuple[str, str], Approx] = {}
 
     def __getattr__(self, name: str) -> Array:
         """Return the result of a function of the module, computed once."""
@@ -196,56 +198,50 @@ class Seen:
     @cached_property
     def values(self) -> Floats:
         """Trees at the points."""
-        at, banks = self.space.columns_of, self.space.banks
-        given = {n: self.points[at[n] if bank else at[n].start] for n, bank in banks.items()}
-        return Floats(given, self.space.probe.defined, self.space.counts)
+        return Floats(self._given, self.space.probe.defined, self.space.counts)
 
     @cached_property
     def edges(self) -> Array:
         """The values of edges; one with a value per lane has a row for each."""
         edges, count = self.space.probe.edges, self.points.shape[1]
-        with np.errstate(all="ignore"):
-            rows = [
-                np.broadcast_to(self.values[edge.tree].value, (self.space.lanes(edge.bank), count))
-                for edge in edges
-            ]
+        rows = (
+            np.broadcast_to(self.of(edge.tree).value, (self.space.lanes(edge.bank), count))
+            for edge in edges
+        )
         return np.concatenate([np.empty((0, count)), *rows])
 
     def law(self, what: str, element: str) -> Approx:
         """Return a law, of shape (lanes, points)."""
-        key = what, element
-        if key not in self._laws:
-            tree, bank = self.space.probe.written(self.space.probe.laws[key])
-            shape = self.space.lanes(bank), self.points.shape[1]
-            with np.errstate(all="ignore"):
-                found = self.values[tree]
-            value, size = (np.broadcast_to(part, shape) for part in (found.value, found.size))
-            self._laws[key] = Approx(value, size, found.lost)
-        return self._laws[key]
+        tree, bank = self.space.probe.law(what, element)
+        found = self.of(tree)
+        shape = self.space.lanes(bank), self.points.shape[1]
+        value, size = (np.broadcast_to(part, shape) for part in (found.value, found.size))
+        return Approx(value, size, found.lost)
 
-    def get(self, what: str, name: str) -> list[tuple[Any, Any]]:
-        """Return a quantity as (value, size) pairs of rows, see `View`."""
-        space = self.space
-        if what in ("heat", "production"):
-            row = space.rows["PROCESSES"][name] if name else slice(None)
-            if what == "production":
-                return [(value, np.abs(value)) for value in self.entropy_production[row]]
-            size = self.law("output", name).size * np.abs(self.law("effort", name).value)
-            return [*zip(self.heat[row], size, strict=True)]
-        if what == "input":
-            return [(value, 0) for value in self.points[space.columns_of[name]]]
-        if what == "rate":
-            return [(value, np.abs(value)) for value in self.rhs[space.rows["STATES"][name]]]
-        law = self.law(what, name)
-        hot = what == "temperature"
-        values = self.temperatures[space.rows["BODIES"][name]] if hot else law.value
-        return [*zip(values, law.size, strict=True)]
+    def of(self, tree: Expr) -> Approx:
+        """Return a tree at the points."""
+        with np.errstate(all="ignore"):
+            return self.values[tree]
 
-    def total(self, what: str) -> tuple[Any, Any]:
-        """Return the sum of a quantity over all elements."""
-        if what not in self._totals:
-            self._totals[what] = summed(self.get(what, ""))
-        return self._totals[what]
+    def holds(self, conditions: Iterable[Cmp]) -> Mask:
+        """Return where all of some comparisons hold."""
+        found: Mask = np.ones(self.points.shape[1], dtype=bool)
+        for c in conditions:
+            found &= COMPARED[c.op](self.of(c.left).value, self.of(c.right).value)
+        return found
+
+    def _given(self, name: str) -> Array | None:
+        """Return a value of the points or of a function of the module, None for other names."""
+        what, _, label = name.partition(" ")
+        if label:
+            function, table = self.space.functions[what]
+            rows, bank = self.space.rows[table][label], self.space.probe.defined[name][1]
+            values: Array = getattr(self, function)[rows]
+        elif name in self.space.columns_of:
+            values, bank = self.points[self.space.columns_of[name]], self.space.banks[name]
+        else:
+            return None
+        return values if bank else values[0]
 
     @property
     def inside(self) -> Mask:
@@ -283,7 +279,6 @@ class Seen:
     def holed(self, element: str) -> Mask:
         """Return where an element's laws, or without a name the junction's, have no value."""
         found: Mask = np.zeros(self.points.shape[1], dtype=bool)
-        with np.errstate(all="ignore"):
-            for tree, _ in self.space.probe.of_element(element):
-                found |= np.atleast_2d(self.values[tree].lost).any(axis=0)
+        for tree, _ in self.space.probe.of_element(element):
+            found |= np.atleast_2d(self.of(tree).lost).any(axis=0)
         return found
