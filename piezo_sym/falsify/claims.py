@@ -71,13 +71,13 @@ def claim_of(probe: Probe, id_: str, element: str) -> Claim | None:
     """Return the claim of a row, or None if it cannot be evaluated at a point."""
     circuit = probe.iphs.circuit
     ports = [placed.port for placed in circuit.ports if placed.element == element]
-    heat = tuple(port.input for _, port in circuit.of(HeatInput))
+    heaters = tuple(port.input for _, port in circuit.of(HeatInput))
     bodies = [placed.element for placed, _ in circuit.of(Body)]
     match id_, ports[-1] if ports else None:
         case (("passive" | "conductance"), DissipativePort()):
-            (output, _), (effort, bank) = probe.law("output", element), probe.law("effort", element)
-            bank = probe.defined[f"heat {element}"][1]
-            power = Inequality("heat", Sym(f"heat {element}"), Mul(output, effort), bank=bank)
+            heat = Sym(f"heat {element}")
+            size = Mul(*(probe.law(what, element)[0] for what in ("output", "effort")))
+            power = Inequality("heat", heat, size, bank=probe.defined[heat.name][1])
             return Claim(id_, element, (power,))
         case (("passive" | "conductance"), (Conductor() | Exchange())):
             return Claim(id_, element, (_conducts(probe, element),))
@@ -89,12 +89,12 @@ def claim_of(probe: Probe, id_: str, element: str) -> Claim | None:
             total = probe.produced
             return Claim(id_, element, (Inequality("sigma", total, total),))
         case "environment", _:
-            return Claim(id_, "", (_balance(probe, "the production", bodies, ONE),), zero=heat)
+            return Claim(id_, "", (_balance(probe, "the production", bodies, ONE),), zero=heaters)
         case "exergy", _:
             outside = tuple(port.input for _, port in circuit.of(Exchange))
             sources = (port.input for _, port in circuit.of(Source))
             lost = _balance(probe, "the exergy lost", bodies, Sym(outside[0]))
-            zero = tuple(name for name in (*sources, *heat) if name not in outside)
+            zero = tuple(name for name in (*sources, *heaters) if name not in outside)
             return Claim(id_, "", (lost,), zero=zero, equal=outside)
         case "invariant", Body():
             return _coldest(probe, element)

@@ -44,15 +44,14 @@ class Attack:
     id, element : of the row.
     points : how many points inside the domain it held at, rounded down to one digit: the number is
         published, and rounding of another processor may put a few points outside.
-    worst : values by name at a point where the row is false in floats, though not exactly.
-    rounding : whether there is such a point.
+    worst : values by name at a point where the row is false in floats, though not exactly; None if
+        there is none.
     """
 
     id: str
     element: str
     points: int
     worst: Mapping[str, str] | None = None
-    rounding: bool = False
 
 
 @final
@@ -213,7 +212,7 @@ class Hunt:
                 raise self._contradiction(claim, found[0], self.space.words(found[1]))
         worst = rounding[0].words(rounding[1]) if rounding else None
         points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
-        return Attack(claim.id, claim.element, points, worst, rounding is not None)
+        return Attack(claim.id, claim.element, points, worst)
 
     @cached_property
     def sides(self) -> list[Sides]:

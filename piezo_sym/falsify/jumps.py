@@ -6,9 +6,10 @@ text, shown by exact arithmetic on two sides that are brought together.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from typing import Any, final
 
 import numpy as np
@@ -36,39 +37,28 @@ def jump(
     claim: Claim, space: Space, found: Iterable[Sides], exact: Exact
 ) -> tuple[str, Array] | None:
     """Return a jump of a law at one of the kinks found, and a point beside it; or None."""
-    for sides in found:
-        for low, high, leap in _suspects(claim, space, sides):
-            value = _confirmed(claim, space, low, high, leap, exact)
-            if value:
-                return value, high
-    return None
-
-
-def _suspects(claim: Claim, space: Space, sides: Sides) -> Iterator[tuple[Array, Array, float]]:
-    """Yield pairs of points beside kinks in states and inputs, and by how much the law changes."""
-    ends = sides.ends
-    for what in space.probe.kinds.get(claim.element, ()):
-        leap, size = _leap((what, claim.element), sides)
+    laws = [(what, claim.element) for what in space.probe.kinds.get(claim.element, ())]
+    for sides, law in product(found, laws):
+        leap, size = _leap(sides, law)
         big = np.where(sides.near, leap / size, 0)
         for n in np.argsort(-big, kind="stable")[:MOST_LOOKED_AT]:
             if big[n] > JUMP:
-                change = float(leap[n]) if leap[n] < LARGEST else 0.0
-                yield ends[0].points[:, n], ends[1].points[:, n], change
+                ends = sides.low.points[:, n], sides.high.points[:, n]
+                change = float(leap[n]) if leap[n] < LARGEST else 0.0  # any, beside a pole
+                value = _confirmed(claim, space, *ends, change, exact)
+                if value:
+                    return value, ends[1]
+    return None
 
 
 @final
 @dataclass(frozen=True)
 class Sides:
-    """Both sides of kinks.
-
-    Attributes
-    ----------
-    near : which kinks are in states and inputs, and inside the domain.
-    ends : next to the kinks.
-    """
+    """Points on both sides of kinks; `near` are kinks in states and inputs, inside the domain."""
 
     near: Mask
-    ends: tuple[Seen, Seen]
+    low: Seen
+    high: Seen
 
 
 def sides_of(space: Space, roots: Roots) -> Sides:
@@ -79,13 +69,12 @@ def sides_of(space: Space, roots: Roots) -> Sides:
     near = space.kinks[roots.edge] & (roots.column >= space.inputs_at)
     near &= np.abs(roots.high) < EXTREME
     base = space.at(roots.base)
-    near &= low.inside & high.inside & ~base.extreme & ~base.steep
-    return Sides(near, (low, high))
+    return Sides(near & low.inside & high.inside & ~base.extreme & ~base.steep, low, high)
 
 
-def _leap(law: tuple[str, str], sides: Sides) -> tuple[Array, Array]:
-    """Return by how much a law changes, and its size."""
-    low, high = (end.law(*law) for end in sides.ends)
+def _leap(sides: Sides, law: tuple[str, str]) -> tuple[Array, Array]:
+    """Return by how much a law changes, in the lane where it does most, and its size there."""
+    low, high = sides.low.law(*law), sides.high.law(*law)
     with np.errstate(all="ignore"):
         leap = np.nan_to_num(np.abs(high.value - low.value), nan=0, posinf=LARGEST)
         size = np.minimum(low.size + high.size, LARGEST)

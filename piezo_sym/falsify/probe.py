@@ -182,22 +182,20 @@ def _varied(found: Iterable[Edge], most: int) -> tuple[Edge, ...]:
     return tuple(kept[:most])
 
 
-#: What the rows of a function of the module are, and of which of its records.
+#: What functions of the module give, by what it is called here; and of which of its records.
 RESULTS = {
     "heat": ("heat", "PROCESSES"),
-    "entropy_production": ("production", "PROCESSES"),
-    "rhs": ("rate", "STATES"),
-    "temperatures": ("temperature", "BODIES"),
+    "production": ("entropy_production", "PROCESSES"),
+    "rate": ("rhs", "STATES"),
+    "temperature": ("temperatures", "BODIES"),
 }
 
 
 def _rows(q: Quantities) -> Iterator[tuple[str, Row]]:
     """Yield the rows of the module's functions."""
-    for function in functions_of(q):
-        if function.name in RESULTS:
-            what, _ = RESULTS[function.name]
-            for row in function.rows:
-                yield f"{what} {row.slot.label}", (row.value, row.slot.bank)
+    rows = {function.name: function.rows for function in functions_of(q)}
+    for what, (function, _) in RESULTS.items():
+        yield from ((f"{what} {r.slot.label}", (r.value, r.slot.bank)) for r in rows[function])
 
 
 def _laws(q: Quantities) -> Iterator[tuple[tuple[str, str], Expr]]:

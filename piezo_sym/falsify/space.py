@@ -120,11 +120,6 @@ class Space:
         }
 
     @cached_property
-    def functions(self) -> Mapping[str, tuple[str, str]]:
-        """By what it gives, each function of the module whose rows have names, and its records."""
-        return {what: (function, table) for function, (what, table) in RESULTS.items()}
-
-    @cached_property
     def kinks(self) -> Mask:
         """Which rows of the edges are kinks."""
         edges = self.probe.edges
@@ -234,7 +229,7 @@ class Seen:
         """Return a value of the points or of a function of the module, None for other names."""
         what, _, label = name.partition(" ")
         if label:
-            function, table = self.space.functions[what]
+            function, table = RESULTS[what]
             rows, bank = self.space.rows[table][label], self.space.probe.defined[name][1]
             values: Array = getattr(self, function)[rows]
         elif name in self.space.columns_of:

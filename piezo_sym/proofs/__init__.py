@@ -80,19 +80,12 @@ def _of_element(
     iphs: IPHS, element: str, own: tuple[Law, ...], assumptions: Assumptions
 ) -> Iterator[Obligation]:
     """Yield what has to be shown of the laws of one element."""
-    loose = next((law.letter for law in own if None in law.ties), "")
-    for made in _of_laws(iphs, element, own, assumptions):
-        yield replace(made, loose=loose)
-
-
-def _of_laws(
-    iphs: IPHS, element: str, own: tuple[Law, ...], assumptions: Assumptions
-) -> Iterator[Obligation]:
-    yield from filter(None, (laws.welldef(own, assumptions),))
-    yield from filter(None, (continuous(own, assumptions),))
+    found = [laws.welldef(own, assumptions), continuous(own, assumptions)]
     for law in own:
         if law.letter:
             information = laws.rate_independent if law.rate else laws.odd
-            yield from (laws.passive(law, assumptions), information(law, assumptions))
+            found += (laws.passive(law, assumptions), information(law, assumptions))
         elif any(placed.element == element for placed, _ in iphs.circuit.of(Conductor)):
-            yield laws.conducts(law, assumptions)
+            found.append(laws.conducts(law, assumptions))
+    loose = next((law.letter for law in own if None in law.ties), "")
+    yield from (replace(made, loose=loose) for made in found if made)

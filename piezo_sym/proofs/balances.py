@@ -11,15 +11,16 @@ from collections.abc import Iterator
 
 import sympy as sp
 
+from piezo_sym.algebra.integrals import vanishes
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.expressions.calculus import add
 from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Cmp, Sym, names
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions, Law
+from piezo_sym.proofs.branches import TooManyBranchesError, branches, parts
 from piezo_sym.proofs.continuity import unbroken
-from piezo_sym.proofs.gradients import same
 from piezo_sym.proofs.laws import valued
 from piezo_sym.proofs.obligations import Obligation, Question, Residual
 from piezo_sym.spec.elements.ports import (
@@ -31,6 +32,7 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
+from piezo_sym.spec.tables import conditions
 
 
 def skew(iphs: IPHS) -> Obligation:
@@ -169,9 +171,41 @@ def _gradient(iphs: IPHS) -> Iterator[Residual]:
         difference = sp.Add(*(sp.diff(law, state) for _, law in own)) - costate
         residual = sp.expand(sp.together(difference))
         rise = add(*(slope(tree, port.state) for tree, _ in own))
-        if residual != 0 and same(iphs, rise, port.law, port.state):
+        if residual != 0 and _is_law(iphs, rise, port.law, port.state):
             residual = sp.S.Zero
         yield Residual(f"dU/d{port.state}", residual)
+
+
+def _is_law(iphs: IPHS, slope: Expr, law: Expr, state: str) -> bool:
+    """Return whether an energy's slope is shown to be a co-state law, wherever both have a value.
+
+    On a branch that is an edge, a = b, they are compared there: a slope of one side is as good as
+    that of the other, for rows ``continuous`` say that neither energy nor law jumps.
+    """
+    known = tuple(condition.tree for condition in conditions(iphs.model))
+    try:
+        found = branches(Call("together", (slope, law)), known)
+    except TooManyBranchesError:
+        return False
+    for branch in found:
+        left, right = (iphs.symbols.law(part, {}) for part in parts(branch))
+        at = dict(_edges(iphs, branch.conditions, iphs.symbols[state]))
+        if not vanishes((left - right).xreplace(at)):
+            return False
+    return True
+
+
+def _edges(
+    iphs: IPHS, where: tuple[Cmp, ...], state: sp.Symbol
+) -> Iterator[tuple[sp.Symbol, sp.Expr]]:
+    """Yield what the state is where a branch is no more than an edge."""
+    for condition in where:
+        if condition.op == ">=" and Cmp("<=", condition.left, condition.right) in where:
+            left, right = (iphs.symbols.law(e, {}) for e in (condition.left, condition.right))
+            slope = sp.diff(left - right, state)
+            if state not in slope.free_symbols and slope.is_nonzero:
+                yield state, sp.expand(state - (left - right) / slope)
+                return
 
 
 def _entries(name: str, matrix: LaneMatrix) -> Iterator[Residual]:

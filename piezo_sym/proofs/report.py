@@ -183,18 +183,12 @@ def proofs_json(report: Report, model: Model, made: str) -> str:
 
 
 def _entry(row: Row, obligation: Obligation | None) -> dict[str, object]:
-    entry: dict[str, object] = {
-        "id": row.id,
-        "element": row.element or None,
-        "statement": row.statement,
-        "required": row.required,
-        "verdict": row.verdict.value,
-        "witness": dict(row.witness) if row.witness else None,
-        "reason": row.reason or None,
-        "method": row.method,
-        "points": row.points,
-        "certificate": list(row.certificate) or None,
-    }
+    said = row.as_dict("")
+    entry = {name: said[name] for name in ("id", "element")}
+    entry |= {"statement": row.statement, "required": row.required}
+    entry |= {name: said[name] for name in ("verdict", "witness", "reason")}
+    entry |= {"method": row.method, "points": row.points}
+    entry["certificate"] = list(row.certificate) or None
     if obligation:
         entry["latex"] = obligation.latex
         entry["assumptions"] = list(obligation.assumptions)

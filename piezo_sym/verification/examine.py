@@ -39,7 +39,7 @@ def examine(iphs: IPHS, points: int = POINTS) -> Iterator[Report]:
     attacks = falsify(iphs, module_from(texts[".py"]), claims, points=points)
     found = {(attack.id, attack.element): attack for attack in attacks}
     attacked = (_attacked(row, found.get((row.id, row.element))) for row in rows)
-    rounding = (_rounding(attack) for attack in attacks if attack.rounding)
+    rounding = (_rounding(attack) for attack in attacks if attack.worst)
     yield replace(proved, rows=(*attacked, *rounding))
 
 

@@ -114,7 +114,7 @@ def test_a_law_that_is_active_on_a_small_set_is_caught(tmp_path, name):
 )
 def test_a_true_law_that_rounds_below_zero_is_no_contradiction(tmp_path, law):
     (attack,) = attacked(built(tmp_path, damper(law), *of_names(law)), PASSIVE)
-    assert attack.rounding
+    assert attack.worst
     assert attack.points >= 20_000
     assert float(attack.worst["p"]) != 0
 
@@ -142,7 +142,7 @@ def test_a_law_without_a_value_somewhere_is_caught(tmp_path, law, assume):
 )
 def test_an_overflow_is_no_contradiction(tmp_path, law):
     (attack,) = attacked(built(tmp_path, damper(law), *of_names(law)), ("welldef", "damper"))
-    assert not attack.rounding
+    assert not attack.worst
 
 
 @pytest.mark.parametrize(
@@ -193,7 +193,7 @@ def test_a_power_with_a_small_exponent_is_no_jump_and_a_jump_beside_a_large_one_
 def test_a_power_that_overflows_where_the_law_is_zero_is_no_rounding(tmp_path):
     iphs = built(tmp_path, damper("a*v*abs(b/a_1)**n"), "a > 0", "a_1 > 0", "n > 0", n=1.5)
     (attack,) = attacked(iphs, PASSIVE, points=100_000)
-    assert not attack.rounding
+    assert not attack.worst
 
 
 @pytest.mark.parametrize(
@@ -215,7 +215,7 @@ def test_a_temperature_that_falls_or_is_not_positive_is_caught(tmp_path, heat, a
 
 def test_a_temperature_that_is_known_to_be_positive_is_not(tmp_path):
     iphs = built(tmp_path, damper("a*v"), "a > 0", "T > T_0/2", heat="T_0*(1 + S/c_0)")
-    assert not attacked(iphs, ("temperature", "body"))[0].rounding
+    assert not attacked(iphs, ("temperature", "body"))[0].worst
 
 
 @pytest.mark.parametrize(
@@ -251,7 +251,7 @@ def test_the_paper_holds_at_the_same_points_each_time(stack, rows):
     first, second = (falsify(stack, module_of(stack), rows) for _ in range(2))
     assert first == second
     assert [(attack.id, attack.element) for attack in first] == list(rows)
-    assert not any(attack.rounding for attack in first)
+    assert not any(attack.worst for attack in first)
     assert all(attack.points >= 100_000 for attack in first if attack.id != "invariant")
     assert all(attack.points >= 10_000 for attack in first)
 
@@ -282,7 +282,7 @@ def test_the_module_is_attacked_not_the_spec(stack):
     heat = module.heat
     module.heat = lambda x, u, p: -np.abs(heat(x, u, p)) - 1
     (attack,) = falsify(stack, module, [("passive", "damper")])
-    assert attack.rounding
+    assert attack.worst
 
 
 def test_a_mass_alone_has_nothing_to_jump(tmp_path):
