@@ -122,7 +122,8 @@ def _call(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[s
             try:
                 out, err = running.communicate(timeout=seconds)
             except BaseException:  # it takes too long, or Ctrl-C: its children hold the pipes, too
-                _end(running)
+                with suppress(ProcessLookupError):
+                    os.killpg(running.pid, signal.SIGKILL)
                 raise
         return subprocess.CompletedProcess(words, running.returncode, out, err)
     except subprocess.TimeoutExpired as error:
@@ -130,14 +131,6 @@ def _call(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[s
     except (OSError, subprocess.SubprocessError) as error:
         why = getattr(error, "strerror", None) or type(error).__name__
         raise EngineError(f"the compiler does not run ({why})", words[0]) from error
-
-
-def _end(running: subprocess.Popen[str]) -> None:
-    if sys.platform == "win32":
-        running.kill()
-    else:
-        with suppress(ProcessLookupError):
-            os.killpg(running.pid, signal.SIGKILL)
 
 
 @cache

@@ -36,7 +36,7 @@ from piezo_sym.run.module import GeneratedModule
 Layout = Literal["one", "many", "lanes", "slopes"]
 #: What is compiled; the other files are included there.
 UNITS = ("driver.c", "stages.c")
-ENDING = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+ENDING = ".dylib" if sys.platform == "darwin" else ".so"
 #: Of the file with a library's digest; of folders in which one is compiled, and their age [s] where
 #: a killed compilation has left one.
 DIGEST, BUILD, LEFT_SECONDS = ".sha256", ".build-", 3600.0
@@ -44,7 +44,7 @@ DIGEST, BUILD, LEFT_SECONDS = ".sha256", ".build-", 3600.0
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _VALUES = re.compile(r"^#define \w+_DEFAULTS \{ \\\n(?:.*\\\n)*\}$", re.MULTILINE)
 #: Which variable says where caches are.
-CACHE = {"win32": "LOCALAPPDATA", "darwin": "HOME"}.get(sys.platform, "XDG_CACHE_HOME")
+CACHE = "HOME" if sys.platform == "darwin" else "XDG_CACHE_HOME"
 
 
 class EngineWarning(UserWarning):
@@ -122,9 +122,7 @@ def _read(file: Path, changed: int, size: int) -> str | None:
 
 def shared_library(sources: Sources) -> ctypes.CDLL:
     """Return the library of some texts, compiled if need be, loaded."""
-    with suppress(OSError):  # a damaged file in the cache
-        return ctypes.CDLL(str(library(sources)))
-    path = library(sources, again=True)
+    path = library(sources)
     try:
         return ctypes.CDLL(str(path))
     except OSError as error:
@@ -132,29 +130,23 @@ def shared_library(sources: Sources) -> ctypes.CDLL:
         raise EngineError(what, path_text(path), remedy="delete it") from error
 
 
-def library(sources: Sources, *, again: bool = False) -> Path:
-    """Return the library of a module; it is compiled if it is not in the cache.
-
-    It is compiled `again` even if there is one, where that cannot be loaded.
-    """
+def library(sources: Sources) -> Path:
+    """Return the library of a module; it is compiled if it is not in the cache."""
     first: EngineError | None = None
-    hung: set[Compiler] = set()
-    for compiler, options in ((one, some) for one in compilers() for some in FLAGS):
-        if compiler in hung:
-            continue
-        flags = _flags(sources, options)
-        try:
-            path = _kept(sources, compiler, flags, again=again)
-        except EngineError as error:
-            first = first or error
-            if isinstance(error.__cause__, TimeoutExpired):  # other flags will not wake it
-                hung.add(compiler)
-            continue
-        if wanted := passed_by(compiler):
-            why = first.what if first else "it does not run"
-            taken = one_line(" ".join(compiler.command))
-            _warn(f"CC names {path_text(wanted)}, but {why}; {taken} is taken")
-        return path
+    for compiler in compilers():
+        for options in FLAGS:
+            try:
+                path = _cached(sources, compiler, _flags(sources, options))
+            except EngineError as error:
+                first = first or error
+                if isinstance(error.__cause__, TimeoutExpired):
+                    break  # other flags will not wake it
+                continue
+            if wanted := passed_by(compiler):
+                why = first.what if first else "it does not run"
+                taken = one_line(" ".join(compiler.command))
+                _warn(f"CC names {path_text(wanted)}, but {why}; {taken} is taken")
+            return path
     if first:
         raise first
     remedy = "install gcc or clang, set CC, or `pip install piezo_sym[zig]`"
@@ -186,11 +178,11 @@ def _key(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> str:
     return found.hexdigest()[:32]
 
 
-def _kept(sources: Sources, compiler: Compiler, flags: tuple[str, ...], *, again: bool) -> Path:
+def _cached(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> Path:
     """Return a compiled library, in the cache or else in a folder of this process alone."""
     place = Path(_key(sources, compiler, flags)) / f"{sources.name}{ENDING}"
     path = cache_folder() / place
-    if not again and _whole(path):
+    if _whole(path):
         return path
     try:
         _build(sources, compiler, flags, path)
@@ -199,7 +191,7 @@ def _kept(sources: Sources, compiler: Compiler, flags: tuple[str, ...], *, again
         where, remedy = path_text(cache_folder()), f"set {CACHE} to a folder that can be written"
         try:
             path = temporary_folder() / place
-            if again or not _whole(path):
+            if not _whole(path):
                 _build(sources, compiler, flags, path)
         except (OSError, FileError) as both:
             raise EngineError(why, where, remedy=remedy) from both
@@ -221,26 +213,21 @@ def _digest(path: Path) -> str:
 
 def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: Path) -> None:
     """Compile beside the library's place, then move the result there."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        _clean(path.parent)
-        with tempfile.TemporaryDirectory(prefix=BUILD, dir=path.parent) as temporary:
-            folder = Path(temporary)
-            for name, text in sources.files().items():
-                (folder / name).write_text(text, encoding="utf-8")
-            built = folder / path.name
-            units = [folder / name for name in UNITS if (folder / name).is_file()]
-            build(compiler, flags, units, built)
-            mark = built.with_suffix(DIGEST)
-            mark.write_text(_digest(built), encoding="ascii")
-            for file in (built, mark):
-                with file.open("rb+") as opened:
-                    os.fsync(opened.fileno())
-                file.replace(path.with_name(file.name))
-    except OSError:
-        if os.path.isfile(path) and sys.platform == "win32":  # another process has it, and uses it
-            return
-        raise
+    path.parent.mkdir(parents=True, exist_ok=True)
+    _clean(path.parent)
+    with tempfile.TemporaryDirectory(prefix=BUILD, dir=path.parent) as temporary:
+        folder = Path(temporary)
+        for name, text in sources.files().items():
+            (folder / name).write_text(text, encoding="utf-8")
+        built = folder / path.name
+        units = [folder / name for name in UNITS if (folder / name).is_file()]
+        build(compiler, flags, units, built)
+        mark = built.with_suffix(DIGEST)
+        mark.write_text(_digest(built), encoding="ascii")
+        for file in (built, mark):
+            with file.open("rb+") as opened:
+                os.fsync(opened.fileno())
+            file.replace(path.with_name(file.name))
 
 
 def _clean(folder: Path) -> None:

@@ -71,10 +71,10 @@ def addresses(array: NDArray[Any]) -> NDArray[np.uintp]:
 @final
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """A C structure and the arrays that its pointers point into."""
+    """A C structure, and what it and its pointers lie in."""
 
     value: ctypes.Structure
-    arrays: tuple[FloatArray, ...]
+    kept: tuple[object, ...]
 
 
 @final
@@ -102,7 +102,7 @@ class ParameterRecords:
         ]
         fields += [(f"count_{n}", LONG) for n, _ in enumerate(module.BANKS)]
         none = [("none", ctypes.c_char)]
-        self._kind = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
+        self._kind: Any = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
         self._remembered = lru_cache(maxsize=REMEMBERED)(self._made)
 
     def __call__(self, p: Any) -> Structure:
@@ -113,33 +113,24 @@ class ParameterRecords:
             return self._made(p)
 
     def _made(self, p: Any) -> Structure:
-        values: list[float | int] = []
-        arrays: list[FloatArray] = []
-        for record in self._module.PARAMETERS:
-            value = getattr(p, record.name)
-            if record.bank:
-                arrays.append(_spread(value, lanes(p, record.bank)))
-                values.append(arrays[-1].ctypes.data)
-            else:
-                values.append(float(value))
-        values += [lanes(p, bank) for bank in self._module.BANKS]
-        return Structure(self._kind(*values), tuple(arrays))
+        found = self.many([p])
+        return Structure(self._kind.from_address(int(found.addresses[0])), found.kept)
 
     def many(self, parameters: Sequence[Any]) -> Structures:
         """Return the structures of runs whose banks have equal sizes."""
-        first = self(parameters[0])
-        records = np.full(
-            len(parameters), np.frombuffer(memoryview(first.value), np.dtype(self._kind))
-        )
-        kept: list[object] = [first, records]
+        records: NDArray[Any] = np.zeros(len(parameters), np.dtype(self._kind))
+        kept: list[object] = [records]
         for n, record in enumerate(self._module.PARAMETERS):
             values = [getattr(p, record.name) for p in parameters]
-            if record.bank and any(value is not values[0] for value in values):
-                count = lanes(parameters[0], record.bank)
-                kept.append(rows := np.array([_spread(value, count) for value in values]))
+            if record.bank:
+                count, same = lanes(parameters[0], record.bank), all(v is values[0] for v in values)
+                rows = np.array([_spread(v, count) for v in (values[:1] if same else values)])
+                kept.append(rows)
                 records[f"field_{n}"] = addresses(rows)
-            elif not record.bank:
+            else:
                 records[f"field_{n}"] = values
+        for n, bank in enumerate(self._module.BANKS):
+            records[f"count_{n}"] = lanes(parameters[0], bank)
         return Structures(addresses(records), tuple(kept))
 
 
