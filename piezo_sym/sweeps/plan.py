@@ -139,14 +139,15 @@ class Plan:
             for target in axis.targets:
                 yield n, target
 
-    def values_at(self, kind: str, point: NDArray[np.intp]) -> dict[str, Any]:
-        """Return the values at a point of what is swept of a kind, but for sizes."""
-        swept = ((n, t) for n, t in self.swept() if t.kind == kind and not t.is_size)
-        return {target.name: target.values[point[n]] for n, target in swept}
+    def values_at(self, kind: str, points: NDArray[np.intp]) -> Iterator[dict[str, Any]]:
+        """Yield the values of what is swept of a kind, but for sizes, at each point."""
+        swept = [(n, t) for n, t in self.swept() if t.kind == kind and not t.is_size]
+        for point in points.tolist():
+            yield {target.name: target.values[point[n]] for n, target in swept}
 
     def inputs_at(self, module: GeneratedModule, point: NDArray[np.intp]) -> Inputs:
         """Return the inputs of the runs at a point."""
-        swept = self.values_at("inputs", point)
+        (swept,) = self.values_at("inputs", point[None])
         named = zip(module.INPUTS, self.signals, strict=True)
         values = (swept.get(record.name, signal) for record, signal in named)
         return Inputs(

@@ -68,16 +68,15 @@ def group_at(
     A run that cannot start has the same error as from `simulate`.
     """
     inputs, base = plan.inputs_at(module, points[0]), plan.base_at(module, points[0])
-    values = ({**vars(base), **plan.values_at("parameters", point)} for point in points)
-    systems = [DrivenModule(module, replace(base, **one), inputs) for one in values]
+    changed = plan.values_at("parameters", points)
+    systems = [DrivenModule(module, replace(base, **values), inputs) for values in changed]
     u = inputs.segments[0].at(0.0)
     start = np.full((len(points), row_count(module.STATES, base)), np.nan)
     errors = [""] * len(points)
-    for k, system in enumerate(systems):
-        p, given = system.parameters, {**plan.initial, **plan.values_at("initial", points[k])}
+    for k, swept in enumerate(plan.values_at("initial", points)):
+        p, given = systems[k].parameters, {**plan.initial, **swept}
         try:
-            x = read_initial(module, p, u, given) if given else own_initial(module, p, u)
-            start[k] = x
+            start[k] = read_initial(module, p, u, given) if given else own_initial(module, p, u)
         except PiezoError as error:
             errors[k] = str(error)
     check_starts(systems, engine, start, errors)

@@ -123,8 +123,13 @@ class ParameterRecords:
         for n, record in enumerate(self._module.PARAMETERS):
             values = [getattr(p, record.name) for p in parameters]
             if record.bank:
-                count, same = lanes(parameters[0], record.bank), all(v is values[0] for v in values)
-                rows = np.array([_spread(v, count) for v in (values[:1] if same else values)])
+                count = lanes(parameters[0], record.bank)
+                if all(value is values[0] for value in values):
+                    rows = _spread(values[0], count)[None]
+                elif all(isinstance(value, float) for value in values):
+                    rows = np.repeat(np.array(values, dtype=float)[:, None], count, axis=1)
+                else:
+                    rows = np.array([_spread(value, count) for value in values])
                 kept.append(rows)
                 records[f"field_{n}"] = addresses(rows)
             else:
