@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias, TypeVa
 from piezo_sym.analysis import branches, steady
 from piezo_sym.analysis import operating_point as rest
 from piezo_sym.modules import module_of
-from piezo_sym.progress import watch_of
+from piezo_sym.progress import progress_of
 from piezo_sym.run import simulate as run
 from piezo_sym.run.simulate import stages_of
 from piezo_sym.run.stepper import Stepper as Steps
@@ -58,9 +58,15 @@ def _with_bar(run: Callable[P, R]) -> Callable[P, R]:
 
     def call(*args: P.args, **given: P.kwargs) -> R:
         options: dict[str, Any] = given
-        last = getattr(options.get("initial"), "time", None)
+        wanted = options.get("progress")
+        wanted = False if wanted is None else wanted
+        if callable(wanted):
+            return run(*args, **given)
+        last, length = getattr(options.get("initial"), "time", None), options.get("duration")
         start = options.get("t0") or (0.0 if last is None else float(last[-1]))
-        with watch_of(options.get("progress"), options.get("duration"), start) as watch:
+        total = length if isinstance(length, int | float) else 0.0  # the run refuses others
+        with progress_of(wanted, total, "simulated [s]", "simulate.progress") as tell:
+            watch = (lambda t: tell(t - start)) if wanted else None
             return run(*args, **{**options, "progress": watch})
 
     return update_wrapper(call, run)

@@ -140,11 +140,12 @@ def run_missing(sink: Results, submit: Submit, at_once: int, progress: object, t
     """Run the boxes that are missing, and keep the results as they are completed."""
     boxes = list(sink.missing())
     done = total - sum(prod(part.stop - part.start for part in box) for box in boxes)
-    with progress_of(progress, total) as tell, closing(results(submit, boxes, at_once)) as found:
+    telling = progress_of(progress, total, "sweep", "sweep.progress")
+    with telling as tell, closing(results(submit, boxes, at_once)) as found:
         for region, result in found:
             sink.take(region, result)
             done += result.errors.size
-            tell(done)
+            tell(done, total)
 
 
 def refuse_executor(executor: object, threads: object) -> None:
