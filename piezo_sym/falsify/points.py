@@ -162,23 +162,10 @@ class Draw:
     @cached_property
     def table(self) -> Array:
         """Values to draw from per column, repeated once so that any start leaves enough of them."""
-        fixed = self._one_sided(self.known[:, -32:])
-        once = np.array([self._values(column, fixed[column]) for column in range(len(self.scales))])
+        once = np.array([self._values(column) for column in range(len(self.scales))])
         return np.concatenate([once, once], axis=1)
 
-    def _one_sided(self, bases: Array) -> list[bool]:
-        """Return for each column whether no point stays in the domain if its sign changes."""
-        (columns, count), found = bases.shape, list[bool]()
-        together = max(1, self.space.block // count)
-        for first in range(0, columns, together):
-            own = np.arange(first, min(first + together, columns))
-            turned = np.tile(bases, len(own)).reshape(columns, len(own), count)
-            turned[own, own - first] *= -1
-            inside = self.space.at(turned.reshape(columns, -1)).inside
-            found += [not one.any() for one in inside.reshape(len(own), count)]
-        return found
-
-    def _values(self, column: int, fixed: bool) -> Array:
+    def _values(self, column: int) -> Array:
         """Return values to draw: scales times factors near 1 or of many decades, simple numbers."""
         u, v = self.rng.random((2, TABLE))
         kind = np.arange(TABLE) % 16
@@ -186,8 +173,7 @@ class Draw:
         near = 1 + np.where(v < 0.5, 1, -1) * _power(-16 * u)
         factor = np.where((kind >= 9) & (kind < 14), near, _power(exponent))
         scale = np.array(self.scales[column])[self.rng.integers(0, len(self.scales[column]), TABLE)]
-        sign = np.where(self.rng.random(TABLE) < (0.02 if fixed else 0.5), -1, 1)
-        sign = -sign if fixed and self.known[column, 0] < 0 else sign
+        sign = np.where(self.rng.random(TABLE) < 0.5, -1, 1)
         simple = SIMPLE[self.rng.integers(0, len(SIMPLE), TABLE)]
         with np.errstate(over="ignore"):
             values = _bounded(np.where(kind == 14, simple, sign * scale * factor))
