@@ -15,7 +15,7 @@ from typing import Any, final
 from flint import arb, ctx, fmpq, fmpz
 
 from piezo_sym.expressions.calculus import choices, increasing
-from piezo_sym.expressions.functions import RECORDS, LawFunction
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.grammar import MAX_POWER, parse_rule
 from piezo_sym.expressions.tree import (
     Add,
@@ -219,17 +219,14 @@ def _call(function: str, args: list[Value]) -> Value:
         return _raised(z, args[1])
     if record.domain and _sign(z) != 1:
         raise ValueError(f"{function} of a number that is not positive")
-    if not (record.domain or abs(z) <= LARGEST_ARGUMENT or _bounded_far_out(record, z)):
+    low, high = (isinstance(bound, Fraction) for bound in record.bounds)
+    below, above = record.monotone and z > 0, record.monotone and z < 0
+    bounded = (low or below) and (high or above)  # far out on the side of z
+    if not (record.domain or abs(z) <= LARGEST_ARGUMENT or bounded):
         raise TooCloseError
     if record.known and isinstance(z, fmpq) and z == record.known[0]:
         return fmpq(record.known[1])
     return getattr(arb(z), function)()
-
-
-def _bounded_far_out(record: LawFunction, z: Value) -> bool:
-    """Return whether a function's values at large arguments of the sign of z are bounded."""
-    low, high = (isinstance(bound, Fraction) for bound in record.bounds)
-    return (low or (record.monotone and z > 0)) and (high or (record.monotone and z < 0))
 
 
 def _sign(value: Value) -> int:

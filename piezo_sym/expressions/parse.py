@@ -74,8 +74,9 @@ def _condition(text: str) -> Cmp:
 def _check_constants(node: Expr | Cmp) -> bool:
     """Return whether `node` is constant; refuse the smallest constant part without a value."""
     constant = all([_check_constants(part) for part in children(node)])
-    if isinstance(node, Div):
-        _check_divisor(node)
+    if isinstance(node, Div) and not names(node.right) and evaluate(node.right, {}) == 0:
+        what = f"divides by {quote(spell(node.right))}, which is zero"
+        raise RefusedError(what, remedy="divide by something else")
     if isinstance(node, Cmp) or not constant or isinstance(node, Sym):
         return constant and not isinstance(node, Sym)
     try:
@@ -84,10 +85,3 @@ def _check_constants(node: Expr | Cmp) -> bool:
         what = f"has the constant part {quote(spell(node))} without a finite real value"
         raise RefusedError(what, remedy="give the number itself") from None
     return True
-
-
-def _check_divisor(node: Div) -> None:
-    """Refuse a division by a constant that is zero; constants have been found to have values."""
-    if not names(node.right) and evaluate(node.right, {}) == 0:
-        what = f"divides by {quote(spell(node.right))}, which is zero"
-        raise RefusedError(what, remedy="divide by something else")

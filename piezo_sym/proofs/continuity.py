@@ -58,11 +58,17 @@ def continuous(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | 
     statement = _statement(*own)
     made = Obligation("continuous", element, statement, latex, assumptions.texts)
     tables = [law for law in own if not _chooses(law.tree)]
-    valid = made.asking(lambda: _valued(tables, assumptions), own[0].of_element)
+    alone = [law for law in tables if not law.letter]  # of others row welldef is there in any case
+    valid = made.asking(
+        lambda: (q for law in alone for q in valued(law.tree, assumptions)), own[0].of_element
+    )
     if valid.open_because:
         return valid
-    given = valid.questions or any(law.letter for law in tables)
-    asked = made.asking(lambda: _unbroken(own, assumptions), own[0].of_element)
+    given = valid.questions or len(alone) < len(tables)
+    asked = made.asking(
+        lambda: (q for law in own for q in unbroken(law, assumptions.about(law))),
+        own[0].of_element,
+    )
     return replace(asked, rests_on=(("welldef", element),) if given else ())
 
 
@@ -73,36 +79,18 @@ def _statement(*laws: Law) -> str:
     return f"{named} has no jump where its branches meet"
 
 
-def _valued(tables: list[Law], assumptions: Assumptions) -> Iterator[Question]:
-    for law in tables:
-        if not law.letter:  # else row welldef is there in any case
-            yield from valued(law.tree, assumptions)
-
-
-def _unbroken(laws: list[Law], assumptions: Assumptions) -> Iterator[Question]:
-    for law in laws:
-        yield from unbroken(law, assumptions.about(law))
-
-
 def unbroken(law: Law, assumptions: Assumptions) -> Iterator[Question]:
     """Yield the questions whether a law has no jump, as a part of what another row says.
+
+    They are on each pair of branches that may meet, and whether the branches cover all.
 
     Raises
     ------
     TooManyBranchesError
         If the law has too many branches.
     """
-    if _edges(law, assumptions) and _chooses(law.tree):
-        yield from _on_pairs(law, assumptions, _statement(law))
-
-
-def _edges(law: Law, assumptions: Assumptions) -> list[Cmp]:
-    """Return the comparisons that choose in a law, but for those that parameters decide."""
-    return [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= assumptions.fixed]
-
-
-def _on_pairs(law: Law, assumptions: Assumptions, statement: str) -> Iterator[Question]:
-    """Yield the questions on each pair of branches that may meet, and whether they cover all."""
+    if not (_edges(law, assumptions) and _chooses(law.tree)):
+        return
     found = branches(law.tree, assumptions.where)
     if len(found) > MOST:
         raise TooManyBranchesError(MOST)
@@ -112,7 +100,12 @@ def _on_pairs(law: Law, assumptions: Assumptions, statement: str) -> Iterator[Qu
             meeting = Meeting(tree, (one, other), assumptions.where, assumptions.fixed)
             yield from _meeting(meeting, assumptions)
     if len(found) > 1:
-        yield assumptions.question(statement, Cmp("=", law.tree, law.tree)).covered(found)
+        yield assumptions.question(_statement(law), Cmp("=", law.tree, law.tree)).covered(found)
+
+
+def _edges(law: Law, assumptions: Assumptions) -> list[Cmp]:
+    """Return the comparisons that choose in a law, but for those that parameters decide."""
+    return [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= assumptions.fixed]
 
 
 def _chooses(law: Expr) -> bool:
@@ -221,7 +214,8 @@ def _other(side: Branch, meeting: Meeting, at: Value, values: Numbers) -> bool:
         return False
     except (ArithmeticError, ValueError):
         ways = _ways(side, meeting, values)
-        return any(_grows([_size(meeting.law, point) for point in way]) for way in ways)
+        sizes = ([_size(meeting.law, point) for point in way] for way in ways)
+        return any(s[0] > 0 and all(b > GROWTH * a for a, b in pairwise(s)) for s in sizes)
     return apart and any(True for _ in _ways(side, meeting, values))
 
 
@@ -230,10 +224,6 @@ def _size(law: Expr, values: Numbers) -> float:
         return abs(float(value_of(law, values)))
     except (ArithmeticError, ValueError):
         return 0.0
-
-
-def _grows(sizes: list[float]) -> bool:
-    return sizes[0] > 0 and all(later > GROWTH * before for before, later in pairwise(sizes))
 
 
 def _ways(side: Branch, meeting: Meeting, values: Numbers) -> Iterator[list[Numbers]]:

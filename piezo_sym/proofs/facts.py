@@ -24,8 +24,13 @@ def facts_on(function: str, exponent: Fraction | Expr, x: Expr, y: Expr) -> Iter
     ----------
     function : ``exp`` ..., or ``root`` for the power `exponent` of x; ``pow`` has it as a tree.
     """
-    if isinstance(exponent, Fraction) and function == "root":
-        yield from _of_root(exponent, x, y)
+    if isinstance(exponent, Fraction) and function == "root":  # y**q = x**p defines x**(p/q) >= 0
+        undefined = Cmp("<" if exponent > 0 else "<=", x, ZERO)
+        yield (undefined, Cmp(">=", y, ZERO))
+        root = power(y, Fraction(exponent.denominator))
+        inside = power(x, abs(Fraction(exponent.numerator)))
+        sides = (root, inside) if exponent > 0 else (mul(root, inside), ONE)
+        yield (undefined, Cmp("=", *sides))
     elif function in RECORDS:
         yield from (clause(text, x, y) for text in RECORDS[function].facts)
 
@@ -50,13 +55,3 @@ def facts_on_two(
         yield (*undefined, Cmp("<", x, a), Cmp(">=", y, b))
     elif function != "root":
         yield (Cmp("!=", x, a), Cmp("=", y, b))
-
-
-def _of_root(exponent: Fraction, x: Expr, y: Expr) -> Iterator[Clause]:
-    """Yield that y >= 0 and y**q = x**p, which defines y = x**(p/q)."""
-    undefined = Cmp("<" if exponent > 0 else "<=", x, ZERO)
-    yield (undefined, Cmp(">=", y, ZERO))
-    root = power(y, Fraction(exponent.denominator))
-    inside = power(x, abs(Fraction(exponent.numerator)))
-    sides = (root, inside) if exponent > 0 else (mul(root, inside), ONE)
-    yield (undefined, Cmp("=", *sides))

@@ -120,9 +120,8 @@ def query(
 
 
 def _clause(clause: Clause) -> str:
-    if len(clause) == 1:
-        return _comparison(clause[0])
-    return f"(or {' '.join(_comparison(part) for part in clause)})"
+    first, *others = map(_comparison, clause)
+    return f"(or {first} {' '.join(others)})" if others else first
 
 
 def _comparison(part: Cmp) -> str:

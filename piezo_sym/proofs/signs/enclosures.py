@@ -259,16 +259,12 @@ def _larger_value(a: Interval, b: Interval) -> Interval:
     return iv.interval(max(a.lo, b.lo), max(a.hi, b.hi))
 
 
-def _smaller(a: Enclosure, b: Enclosure) -> Enclosure:
-    return _minus(_larger(_minus(a), _minus(b)))
-
-
 #: Functions with kinks that the formulas of the others are written in.
 KINKED: Mapping[str, Callable[..., Enclosure]] = {
     "abs": _absolute,
     "sign": _sign,
     "max": _larger,
-    "min": _smaller,
+    "min": lambda a, b: _minus(_larger(_minus(a), _minus(b))),
 }
 
 
