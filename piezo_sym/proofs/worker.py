@@ -12,7 +12,7 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -32,18 +32,12 @@ SIMPLE = (
 Answer = dict[str, Any]
 
 
-def start_z3() -> Any:
-    """Return a new solver and context: earlier queries cannot change an answer."""
-    import z3
-
-    return z3.Solver(ctx=z3.Context())
-
-
-def ask_z3(solver: Any, text: str, order: Sequence[str]) -> Answer:
+def ask_z3(text: str, order: Sequence[str]) -> Answer:
     """Return z3's answer, with values of the names in `order`, made simple one after the other."""
     import z3
 
-    context = solver.ctx
+    context = z3.Context()  # a new one: earlier queries cannot change an answer
+    solver = z3.Solver(ctx=context)
     solver.set("rlimit", Z3_LIMIT)
     solver.from_string(text)
     result = str(solver.check())
@@ -51,10 +45,8 @@ def ask_z3(solver: Any, text: str, order: Sequence[str]) -> Answer:
         return {"result": result, "reason": f"z3: {solver.reason_unknown()}"}
     if result == "unsat":
         return {"result": result}
-    model, known = (
-        solver.model(),
-        [z3.And(*solver.assertions())],
-    )  # one conjunction is solved faster
+    model = solver.model()
+    known = [z3.And(*solver.assertions())]  # one conjunction is solved faster
     for name in order:
         model = _simplify(z3, known, model, z3.Real(name, context))
     values = {name: _exact(z3, model, z3.Real(name, context)) for name in order}
@@ -88,18 +80,12 @@ def _exact(z3: Any, model: Any, symbol: Any) -> str:
     return str(value.as_fraction())
 
 
-def start_cvc5() -> Any:
-    """Return a new solver."""
-    import cvc5
-
-    return cvc5.Solver(cvc5.TermManager())
-
-
-def ask_cvc5(solver: Any, text: str, order: Sequence[str]) -> Answer:
+def ask_cvc5(text: str, order: Sequence[str]) -> Answer:
     """Return cvc5's answer, without a model."""
     import cvc5
 
     del order
+    solver = cvc5.Solver(cvc5.TermManager())
     solver.setOption("rlimit-per", str(CVC5_LIMIT))
     parser = cvc5.InputParser(solver)
     parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, f"(set-logic QF_NRA)\n{text}", "query")
@@ -111,28 +97,14 @@ def ask_cvc5(solver: Any, text: str, order: Sequence[str]) -> Answer:
     return {"result": kind, "reason": "" if kind == result else f"cvc5: {result}"}
 
 
-#: How each solver is started, and asked one query.
-SOLVERS: dict[str, tuple[Callable[[], Any], Callable[[Any, str, Sequence[str]], Answer]]] = {
-    "z3": (start_z3, ask_z3),
-    "cvc5": (start_cvc5, ask_cvc5),
-}
+SOLVERS = {"z3": ask_z3, "cvc5": ask_cvc5}
 
 
-def prepared(name: str) -> Any:
-    """Return a solver that was started for one query, or the exception that prevented it."""
-    try:
-        return SOLVERS[name][0]()
-    except Exception as error:
-        return error
-
-
-def answered(name: str, line: str, solver: Any) -> str:
+def answered(name: str, line: str) -> str:
     """Return the answer to a request, both as a line; an exception is an answer, too."""
     request = json.loads(line)
     try:
-        if isinstance(solver, Exception):
-            raise solver
-        answer = SOLVERS[name][1](solver, request["text"], request["order"])
+        answer = SOLVERS[name](request["text"], request["order"])
     except Exception as error:  # the claim is left open
         answer = {"result": "unknown", "reason": f"{name} failed: {type(error).__name__}"}
     return json.dumps(answer)
@@ -142,13 +114,11 @@ def main() -> None:
     """Answer requests until stdin ends; Ctrl-C is left to the parent process, which ends stdin."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     name = sys.argv[1]
-    ready = [prepared(name)]
     for line in sys.stdin:
         try:
-            print(answered(name, line, ready.pop()), flush=True)  # noqa: T201 - the answer
+            print(answered(name, line), flush=True)  # noqa: T201 - the answer
         except BrokenPipeError:  # the parent is gone: end without a traceback
             os._exit(0)
-        ready.append(prepared(name))  # in advance: a start takes longer than most answers
 
 
 if __name__ == "__main__":

@@ -116,7 +116,7 @@ def _answer_here() -> None:
             self.name = name
 
         def ask(self, request: bytes, _: float) -> tuple[bytes]:
-            line = worker.answered(self.name, request.decode(), worker.prepared(self.name))
+            line = worker.answered(self.name, request.decode())
             return (line.encode(),)
 
     worker.Z3_LIMIT = LIMIT
