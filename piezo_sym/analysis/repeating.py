@@ -58,12 +58,6 @@ def refuse_not_following(module: GeneratedModule, inputs: Driven, low: float, hi
         refuse_unperiodic(module, inputs(f), f, "steady_branches", FOLLOW)
 
 
-def any_varies(inputs: Inputs) -> bool:
-    """Return whether any input varies over the period."""
-    times = PROBES * inputs.duration
-    return any(bool(np.ptp(np.asarray(signal(times)))) for signal in inputs.signals)
-
-
 def steps_needed(inputs: Inputs, names: Iterable[str], steps: int) -> int:
     """Return `steps` per period, doubled until they resolve every input.
 

@@ -32,7 +32,6 @@ from piezo_sym.analysis.balance import (
     temperature_range,
     zeros,
 )
-from piezo_sym.analysis.repeating import any_varies
 from piezo_sym.analysis.stroboscope import Stroboscope, over_period, stroboscope
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray, number, positive
@@ -50,8 +49,6 @@ ORBIT_RTOL = 1e-8
 #: Largest residual of a steady state: times its accuracy, and in all.
 RESIDUAL, MOST_RESIDUAL = 100.0, 0.1
 MARGIN = 1e-6  # of a multiplier over 1: the accuracy of its difference quotient
-STILL = "no input moves, and no state of rest is found"
-SIMULATE = "run simulate() until it rests, or give an input that repeats with the frequency"
 
 
 @final
@@ -126,16 +123,8 @@ def periodic_steady_state(
     RunError : no steady state lies in the range; the message says which way the body drifts.
     EngineError : there is no C compiler.
     """
-    strobe = _strobe(module, inputs, frequency, parameters, initial)
-    accuracy = _accuracy(rtol)
-    known = _known(strobe, temperatures)
-    try:
-        first = _first(strobe, known)
-    except RunError as error:
-        if any_varies(strobe.inputs):
-            raise
-        raise RunError(f"{STILL}: {error.what}", error.where, remedy=SIMULATE) from error
-    return _state(strobe, first, accuracy)
+    strobe, accuracy = _begun(module, inputs, frequency, parameters, initial, rtol)
+    return _state(strobe, _first(strobe, _known(strobe, temperatures)), accuracy)
 
 
 def periodic_steady_states(
@@ -154,31 +143,27 @@ def periodic_steady_states(
     period is a multiple of the inputs' are not found. Parameters and errors are as for
     `periodic_steady_state`, but to find none is no error.
     """
-    strobe = _strobe(module, inputs, frequency, parameters, initial)
-    accuracy = _accuracy(rtol)
+    strobe, accuracy = _begun(module, inputs, frequency, parameters, initial, rtol)
     found = zeros(strobe, _known(strobe, temperatures))
-    if not found and not any_varies(strobe.inputs):
-        warnings.warn(f"{STILL}; {SIMULATE}", SteadyWarning, stacklevel=2)
     return tuple(_state(strobe, zero, accuracy) for zero in found)
 
 
-def _strobe(
+def _begun(
     module: GeneratedModule,
     inputs: Mapping[str, InputValue],
     frequency: float,
     parameters: Mapping[str, LaneValue] | None,
     initial: Mapping[str, LaneValue] | None,
-) -> Stroboscope:
+    rtol: object,
+) -> tuple[Stroboscope, float]:
+    """Return what is searched, and the accuracy asked for."""
     f = positive(frequency, "periodic_steady_state.frequency")
-    return stroboscope(module, lambda _: inputs, f, parameters, initial, STEPS)
-
-
-def _accuracy(rtol: object) -> float:
-    value = number(rtol, "periodic_steady_state.rtol")
-    if not 1e-9 <= value <= 0.01:
-        what = f"{value:g} is out of range"
+    strobe = stroboscope(module, lambda _: inputs, f, parameters, initial, STEPS)
+    accuracy = number(rtol, "periodic_steady_state.rtol")
+    if not 1e-9 <= accuracy <= 0.01:
+        what = f"{accuracy:g} is out of range"
         raise UsageError(what, "periodic_steady_state.rtol", "1e-9 to 0.01")
-    return value
+    return strobe, accuracy
 
 
 def _known(strobe: Stroboscope, given: tuple[float, float] | None) -> list[Settled]:
