@@ -110,25 +110,17 @@ def _halved(x: Node, knots: tuple[Node, ...]) -> Node:
         halves = (Node("table", (x, *own)) for own in (knots[: n + 2], knots[n:]))
         return Node("if", (compare(x, "<", knots[n]), *halves))
     a, y, b, z = knots
-    known = [own for own in map(_plain, knots) if own is not None]
+    known = [own.value for own in knots if own.op == "num"]
     slope = made("(z - y)/(b - a)", a=a, b=b, y=y, z=z)
     if len(known) == 4 and known[0] != known[2]:
         slope = num((known[3] - known[1]) / (known[2] - known[0]))
     return made("m*x" if b == z == num(0) else "y + m*(x - a)", m=slope, x=x, a=a, y=y)
 
 
-def _plain(node: Node) -> Fraction | None:
-    """Return the number that a tree is, perhaps with a minus."""
-    if node.op == "neg" and node.args[0].op == "num":
-        return -Fraction(node.args[0].value)
-    return Fraction(node.value) if node.op == "num" else None
-
-
 def increasing(node: Node) -> Iterator[Node]:
     """Yield that the knots of a table increase, but for plain numbers that do."""
     for a, b in pairwise(node.args[1::2] if node.op == "table" else ()):
-        left, right = _plain(a), _plain(b)
-        if left is None or right is None or left >= right:
+        if not a.op == b.op == "num" or a.value >= b.value:
             yield compare(a, "<", b)
 
 
@@ -209,6 +201,8 @@ def _tree(node: ast.AST, text: str) -> Node:
     match node:
         case ast.Constant():
             return num(number(text[node.col_offset : node.end_col_offset]))
+        case ast.UnaryOp(ast.USub(), ast.Constant() as size):
+            return num(-_tree(size, text).value)
         case ast.Name(name):
             return sym(name)
         case ast.BinOp(base, ast.Pow(), exponent):

@@ -73,7 +73,7 @@ def _where(element: Element) -> str:
     nodes = [(field, " - ".join(value)) for field, value in element if isinstance(value, tuple)]
     found = [text if field == "between" else f"{field} {text}" for field, text in nodes]
     found += [getattr(element, "at", "")] if hasattr(element, "at") else []
-    named = ((field, name) for field, _, name in element.references() if field != "between")
+    named = (row for row in element.named("thermal_mass", "input") if row[0] != "between")
     return ", ".join((*found, *(f"{field} {name}" for field, name in named)))
 
 

@@ -85,8 +85,9 @@ def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
         first, last = (own, theirs) if table in ("parameters", "inputs") else (theirs, own)
         flat.add(table, first)
         flat.add(table, last, over=table == "initial")
-    outside = {node for element in spec.elements.values() for node in nodes_of(element)}
-    outside |= {part.node(n) for part in parts for e in part.kept.values() for n in nodes_of(e)}
+    outside = {node for e in spec.elements.values() for _, node in e.named("node")}
+    kept = ((part, e) for part in parts for e in part.kept.values())
+    outside |= {part.node(node) for part, e in kept for _, node in e.named("node")}
     flat.add("elements", cells(spec, outside))
     assumed = [(text, "") for text in spec.domain.assume]
     assumed += [row for part in parts for row in part.assumed()]
@@ -174,7 +175,7 @@ class Part:
 
 
 def _inputs_of(elements: Iterable[Element]) -> set[str]:
-    return {given for e in elements for _, to, given in e.references() if to == "input"}
+    return {given for e in elements for _, given in e.named("input")}
 
 
 def _texts(start: Any) -> Iterator[str]:
@@ -207,11 +208,6 @@ def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any]
             more = {"bank": bank, "count": table.count, "series": table.series}
             fields = Renaming({}, node=node).fields(element, name)
             yield f"{bank}_{name}", fields | more, place
-
-
-def nodes_of(element: Element) -> Iterator[str]:
-    """Yield the nodes that an element names."""
-    return (node for _, to, node in element.named() if to == "node")
 
 
 def _check(element: Element, place: str, where: str) -> None:

@@ -36,14 +36,14 @@ class Renaming:
 
     def fields(self, element: Element, name: str) -> dict[str, Any]:
         """Return the fields of an element, called `name` before, with new names."""
-        to = {"thermal_mass": self.element, "node": self.node, "input": self._word}
         made = {**element.model_dump(exclude_none=True), **self._laws(element)}
         if states := getattr(element, "states", None):
             made["states"] = {self._word(symbol): self._state(s) for symbol, s in states.items()}
-        for field, what, _ in (row for row in element.named() if row[0] != "states"):
+        ways = {"thermal_mass": self.element, "node": self.node, "input": self._word}
+        for field, way in ((row[0], ways[to]) for to in ways for row in element.named(to)):
             given = getattr(element, field)
-            many = isinstance(given, tuple)
-            made[field] = tuple(map(to[what], given)) if many else to[what](given)
+            if field != "states":
+                made[field] = tuple(map(way, given)) if isinstance(given, tuple) else way(given)
         if element.letter and (symbol := state_symbol(element, name)) in self.words:
             made["state"] = self.words[symbol]
         if "bank" in made:
@@ -63,7 +63,7 @@ class Renaming:
         Letters of a law stay; but T is a name where the element names no body whose temperature it
         is.
         """
-        hot = any(to == "thermal_mass" for _, to, _ in element.references())
+        hot = any(element.named("thermal_mass"))
         made = {}
         for law in element.laws(""):
             letters = set() if law.mark.own else {*law.letters} - (set() if hot else {"T"})

@@ -102,7 +102,7 @@ def in_words(spec: Tables, law: LawField, hot: Mapping[str, str]) -> Expr:
 def meanings(spec: Tables, law: LawField, hot: Mapping[str, str]) -> dict[str, str]:
     """Return what names in a law are called in [domain], if they are called differently there."""
     element = spec.elements[law.element]
-    named = [hot[given] for _, to, given in element.references() if to == "thermal_mass"]
+    named = [hot[given] for _, given in element.named("thermal_mass")]
     named = named or list(hot.values())[: len(hot) == 1]
     found = dict(zip(("T_1", "T_2"), named, strict=False)) | dict(zip("T", named, strict=False))
     if element.letter:

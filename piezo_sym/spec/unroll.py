@@ -14,7 +14,6 @@ from piezo_sym.expressions.parse import parse_condition
 from piezo_sym.expressions.tree import names
 from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.elements.ports import Branch
-from piezo_sym.spec.flatten import nodes_of
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.rename import Renaming
 from piezo_sym.spec.tables import bank_of, bank_states, banks, lane_parameters
@@ -121,6 +120,6 @@ def _inner(model: Model) -> set[str]:
     """Return the nodes that elements of one bank alone name."""
     users: dict[str, set[str | None]] = {}
     for name, element in model.elements.items():
-        for node in nodes_of(element):
+        for _, node in element.named("node"):
             users.setdefault(node, set()).add(element.bank_of(name))
     return {n for n, own in users.items() if len(own) == 1 and None not in own} - {*REFERENCES}

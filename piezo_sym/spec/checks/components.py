@@ -21,7 +21,7 @@ def check_component(spec: Tables, where: str, component: Component, model: Table
         Naming what it has not, or does not fit.
     """
     check_name(where.removeprefix("components."), where)
-    used = {node for e in model.elements.values() for _, to, node in e.named() if to == "node"}
+    used = {node for e in model.elements.values() for _, node in e.named("node")}
     for node in component.nodes:
         if node in REFERENCES:
             what = f"{quote(node)} is a reference, the same node in all models"
@@ -72,7 +72,7 @@ def _check_left(where: str, component: Component, model: Tables) -> None:
     if gone >= model.elements.keys():
         raise SpecError("leaves out all elements", f"{where}.without", "some are left")
     for name, element in model.elements.items():
-        for field, to, body in element.references():
-            if to == "thermal_mass" and body in gone and name not in gone:
+        for field, body in element.named("thermal_mass"):
+            if body in gone and name not in gone:
                 what = f"elements.{name}.{field} names {quote(body)}, which is left out"
                 raise SpecError(what, f"{where}.without", remedy=f"leave out {quote(name)} too")

@@ -38,7 +38,7 @@ def check_references(spec: Tables) -> None:
         raise SpecError("has no elements", "elements", "at least one", f"kinds: {listing(KINDS)}")
     known = {"thermal_mass": dict.fromkeys(bodies(spec)), "input": spec.inputs}
     for name, element in spec.elements.items():
-        for field, to, given in element.references():
+        for to, field, given in ((role, *row) for role in known for row in element.named(role)):
             where = f"elements.{name}.{field}"
             if given not in known[to]:
                 raise _unknown_reference(where, to, given, tuple(known[to]), element)
@@ -105,7 +105,7 @@ def check_laws(spec: Tables) -> None:
 
 def _check_body(element: Element, law: LawField) -> None:
     """Refuse a temperature in a law of an element that names no body."""
-    if all(to != "thermal_mass" for _, to, _ in element.references()):
+    if not any(element.named("thermal_mass")):
         remedy = "add to the element: temperature = '<name of a thermal_mass>'"
         raise SpecError("'T' is the temperature of no body", law.where, "a body named", remedy)
 

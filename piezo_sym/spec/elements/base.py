@@ -248,20 +248,16 @@ class Element(Frozen):
                 if isinstance(mark, Letters) and text is not None:
                     yield LawField(name, field, text, mark.of(self))
 
-    def references(self) -> Iterator[tuple[str, str, str]]:
-        """Yield (field, 'input' or 'thermal_mass', the name given)."""
-        return (row for row in self.named() if row[1] != "node")
-
-    def named(self) -> Iterator[tuple[str, str, str]]:
-        """Yield (field, what it refers to, the name given); nodes, too."""
+    def named(self, *to: str) -> Iterator[tuple[str, str]]:
+        """Yield (field, the name given) of what refers `to` 'node', 'input' or 'thermal_mass'."""
         for field, info in type(self).model_fields.items():
-            for mark in info.metadata:
-                given = getattr(self, field)
-                if isinstance(mark, Refers) and given is not None:
-                    names = given if isinstance(given, tuple) else (given,)
-                    yield from ((field, mark.to, name) for name in names)
-        for state in getattr(self, "states", {}).values():
-            yield from (("states", "node", node) for node in state.between or ())
+            given = getattr(self, field)
+            refers = any(isinstance(mark, Refers) and mark.to in to for mark in info.metadata)
+            if refers and given is not None:
+                names = given if isinstance(given, tuple) else (given,)
+                yield from ((field, name) for name in names)
+        for state in getattr(self, "states", {}).values() if "node" in to else ():
+            yield from (("states", node) for node in state.between or ())
 
 
 def positive(law: Expr) -> Cmp:
