@@ -103,7 +103,10 @@ class Circuit:
 def circuit_of(model: Model) -> Circuit:
     """Return the circuit of a model, its quantities named apart from every name of the spec."""
     heat = {body: word for word, body in temperatures(model).items()}
-    laws = {name: dict(_laws(model, name, heat)) for name in model.elements}
+    laws = {
+        name: {law.field: in_words(model, law, heat) for law in element.laws(name)}
+        for name, element in model.elements.items()
+    }
     taken = {*heat.values(), *model.parameters, *model.inputs, *model.elements}
     taken |= {f"{bank}_count" for bank in banks(model)}
     placed = [
@@ -137,12 +140,6 @@ def _in_lane(name: str, element: Element, port: Port) -> Port:
         raise SpecError(what, f"elements.{name}", "cells between their two ends", remedy)
     first, second = (ends.get(node, node) for node in port.branch)
     return replace(port, branch=(first, second))
-
-
-def _laws(model: Model, name: str, heat: Mapping[str, str]) -> Iterator[tuple[str, Expr]]:
-    """Yield the laws of an element by field, in the words of [domain]."""
-    for law in model.elements[name].laws(name):
-        yield law.field, in_words(model, law, heat)
 
 
 def _named(

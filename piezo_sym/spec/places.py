@@ -56,15 +56,30 @@ class Place:
 
 
 def places(spec: Tables) -> Iterator[Place]:
-    """Yield every place of a spec that has a unit, elements first."""
+    """Yield every place of a spec that has a unit, elements first.
+
+    What kinds add to the domain compares a law with 0, which fits any unit; initial values that are
+    plain numbers are in the state's SI unit.
+    """
     parameters = {name: p.dimension.dimension for name, p in spec.parameters.items()}
     given = parameters | {name: u.dimension.dimension for name, u in spec.inputs.items()}
-    seen = state_dimensions(spec) | _temperatures(spec)
+    states = state_dimensions(spec)
+    hot = (*temperatures(spec), *(f"T_{body}" for body in bodies(spec)))
+    seen = states | dict.fromkeys(hot, _dimension("K"))
     for name, element in spec.elements.items():
         yield from (_law(law, parameters, seen) for law in element.laws(name))
-        yield from _inputs(spec, name, given)
-    yield from _conditions(spec, given)
-    yield from _starts(spec, given)
+        for port in element.ports(name):
+            if isinstance(port, Source | Exchange | HeatInput):
+                unit, place = port.input_unit, f"elements.{name}.input"
+                yield Place(place, name, Sym(port.input), given, {}, _dimension(unit), unit)
+    for n, text in enumerate(spec.domain.assume):
+        where = f"domain.assume[{n}]"
+        yield Place(where, "", parse_condition(text, where), given, seen, None)
+    for symbol, start in spec.initial.items():
+        for part in start if isinstance(start, tuple) else (start,):
+            if isinstance(part, str):
+                tree: Expr = parse_law(part, where := f"initial.{symbol}")
+                yield Place(where, "", tree, given, {}, states[symbol])
 
 
 def _law(law: LawField, given: Mapping[str, Dimension], seen: Mapping[str, Dimension]) -> Place:
@@ -73,43 +88,10 @@ def _law(law: LawField, given: Mapping[str, Dimension], seen: Mapping[str, Dimen
     return Place(law.where, law.element, law.tree, given, fixed, _dimension(unit), unit)
 
 
-def _inputs(spec: Tables, name: str, given: Mapping[str, Dimension]) -> Iterator[Place]:
-    for port in spec.elements[name].ports(name):
-        if isinstance(port, Source | Exchange | HeatInput):
-            unit = port.input_unit
-            where, tree = f"elements.{name}.input", Sym(port.input)
-            yield Place(where, name, tree, given, {}, _dimension(unit), unit)
-
-
-def _conditions(spec: Tables, given: Mapping[str, Dimension]) -> Iterator[Place]:
-    """Yield what the spec assumes; what kinds add compares a law with 0, which fits any unit."""
-    fixed = state_dimensions(spec) | _temperatures(spec)
-    for n, text in enumerate(spec.domain.assume):
-        where = f"domain.assume[{n}]"
-        yield Place(where, "", parse_condition(text, where), given, fixed, None)
-
-
-def _starts(spec: Tables, given: Mapping[str, Dimension]) -> Iterator[Place]:
-    """Yield the initial values given as laws; plain numbers are in the state's SI unit."""
-    needed = state_dimensions(spec)
-    for symbol, start in spec.initial.items():
-        where = f"initial.{symbol}"
-        for part in start if isinstance(start, tuple) else (start,):
-            if isinstance(part, str):
-                tree: Expr = parse_law(part, where)
-                yield Place(where, "", tree, given, {}, needed[symbol])
-
-
 def state_dimensions(spec: Tables) -> dict[str, Dimension]:
     """Return the dimension of each state."""
     elements = spec.elements.items()
     return {s.symbol: _dimension(s.unit) for name, e in elements for s in e.own_states(name)}
-
-
-def _temperatures(spec: Tables) -> dict[str, Dimension]:
-    """Return the dimension of each name of a temperature: ``T`` of the only one, ``T_<body>``."""
-    words = (*temperatures(spec), *(f"T_{body}" for body in bodies(spec)))
-    return dict.fromkeys(words, _dimension("K"))
 
 
 def _dimension(unit: str) -> Dimension:

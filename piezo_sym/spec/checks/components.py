@@ -27,15 +27,13 @@ def check_component(spec: Tables, where: str, component: Component, model: Table
             what = f"{quote(node)} is a reference, the same node in all models"
             raise SpecError(what, f"{where}.nodes.{node}", remedy="leave it out")
         _check_known(f"{where}.nodes.{node}", "node", node, used - REFERENCES.keys(), model)
-    for name, given in component.parameters.items():
-        place = f"{where}.parameters.{name}"
-        _check_known(place, "parameter", name, model.parameters, model)
-        if isinstance(given, str):
-            _check_fits(place, "parameter", given, spec.parameters, model.parameters[name])
-    for name, given in component.inputs.items():
-        place = f"{where}.inputs.{name}"
-        _check_known(place, "input", name, model.inputs, model)
-        _check_fits(place, "input", given, spec.inputs, model.inputs[name])
+    for what in ("parameter", "input"):
+        own, theirs, table = (getattr(t, f"{what}s") for t in (spec, model, component))
+        for name, given in table.items():
+            place = f"{where}.{what}s.{name}"
+            _check_known(place, what, name, theirs, model)
+            if isinstance(given, str):
+                _check_fits(place, what, given, own, theirs[name])
     for name in component.without:
         _check_known(f"{where}.without", "element", name, model.elements, model)
     _check_left(where, component, model)

@@ -4,32 +4,27 @@ What couples inside matter: variable inductance, variable capacitance, gas.  At 
 states is an entropy; the element then is a body.
 """
 
-from collections.abc import Mapping
-from typing import Annotated, Any, final
+from typing import Annotated, Any, Literal, final
 
-from pydantic import AfterValidator, Field, StrictStr
+from pydantic import Field
 
 from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.tree import Expr, names
-from piezo_sym.spec.elements.base import ENTROPY_UNIT, Fault, Form, Frozen
-from piezo_sym.spec.elements.domains import DOMAINS, PhysicalDomain, PowerVariable
+from piezo_sym.spec.elements.base import Fault, Form, Frozen
+from piezo_sym.spec.elements.domains import DOMAINS, THERMAL, PhysicalDomain, PowerVariable
 from piezo_sym.spec.elements.marks import Law, Letters, Pair
 from piezo_sym.spec.elements.ports import Body, Branch, Port, Storage
 from piezo_sym.spec.table import Table
 
+ENTROPY = "entropy"
 #: Of each rate, the domain, and which variable the co-state of its state is.
-RATES: Mapping[str, tuple[PhysicalDomain, PowerVariable]] = {
+RATES: dict[str, tuple[PhysicalDomain, PowerVariable]] = {
     domain.variable(which).name: (domain, which.other)
     for domain in DOMAINS
     for which in PowerVariable
 }
-ENTROPY = "entropy"
-
-
-def _known_rate(rate: str) -> str:
-    if rate not in (*RATES, ENTROPY):
-        raise ValueError(f"one of {', '.join((*RATES, ENTROPY))}")
-    return rate
+RATES[ENTROPY] = (THERMAL, PowerVariable.ACROSS)
+Rate: Any = Literal[tuple(RATES)]
 
 
 @final
@@ -37,20 +32,14 @@ class StateOf(Frozen):
     """A state of a storage: the variable of a branch that is its rate."""
 
     rate: Annotated[
-        StrictStr,
-        AfterValidator(_known_rate),
-        Field(
-            description="What the state is the integral of; one state may be the entropy.",
-            json_schema_extra={"enum": [*RATES, ENTROPY]},
-        ),
+        Rate,
+        Field(description="What the state is the integral of; one state may be the entropy."),
     ]
     between: Annotated[Pair | None, Field(description="Two nodes; none for the entropy.")] = None
 
     @property
     def unit(self) -> str:
         """Its unit."""
-        if self.rate == ENTROPY:
-            return ENTROPY_UNIT
         domain, imposes = RATES[self.rate]
         return domain.variable(imposes).state_unit
 
@@ -110,6 +99,7 @@ _STATES = Annotated[
         json_schema_extra={"minProperties": 1},
     ),
 ]
+_WORDS = ", ".join(rate for rate in RATES if rate != ENTROPY)
 _SAMPLE = {
     "phi": {"rate": "voltage", "between": ["coil", "gnd"]},
     "x": {"rate": "velocity", "between": ["armature", "wall"]},
@@ -121,7 +111,7 @@ SHARED_ENERGY = Form(
     },
     doc="Its energy U [J] is a law of all of its states. Each has a rate, the across variable "
     "of its branch (`between`: first node relative to second) or the through variable "
-    f"inside it, from the first node to the second: {', '.join(RATES)}; its co-state dU/dx is the "
+    f"inside it, from the first node to the second: {_WORDS}; its co-state dU/dx is the "
     "conjugate variable of the branch. A state with the rate entropy makes it a body with "
     "the temperature T = dU/dS, which others may heat; there is one at most.",
     ports=_ports,
