@@ -211,7 +211,7 @@ def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any]
 
 
 def _check(element: Element, place: str, where: str) -> None:
-    if not element.row.has_lanes:
+    if not element.row.form.has_lanes:
         what = f"a {element.kind} is in no cell of a bank"
         remedy = f"write it in [elements], with nodes that cells of {where} name, too"
         raise SpecError(what, place, "a store, a dissipative element, a stop or hysteron", remedy)

@@ -84,9 +84,8 @@ def _element(kind: str, element: type[Element], made: Schema) -> Schema:
     """Return a kind's schema, in which `kind` is required, and one field of each group."""
     made["properties"]["kind"] = {"const": kind, "description": "The kind of this element."}
     made["required"] = ["kind", *made.get("required", ())]
-    groups = element.row.one_of
-    if groups:
-        made["allOf"] = [{"oneOf": [{"required": [f]} for f in group]} for group in groups]
+    if group := element.row.form.one_of:
+        made["allOf"] = [{"oneOf": [{"required": [field]} for field in group]}]
     return made
 
 

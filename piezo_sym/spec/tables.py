@@ -133,7 +133,9 @@ def conditions(spec: Tables) -> tuple[Condition, ...]:
 
 def _needed(spec: Tables) -> Iterator[Condition]:
     for name, element in spec.elements.items():
-        yield from (Condition(f"elements.{name}", need) for need in element.requires(name))
+        yield from (
+            Condition(f"elements.{name}", need) for need in element.row.form.requires(element, name)
+        )
 
 
 def _not_negative(

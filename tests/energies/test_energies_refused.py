@@ -11,7 +11,7 @@ STATES = 'q = { rate = "velocity", between = ["piston", "wall"] }\nS = { rate = 
 FAULTS = {
     'q = { rate = "entropy" }\nS = { rate = "entropy" }': "'q' and 'S' are both entropies",
     STATES.replace(', between = ["piston", "wall"]', ""): "states.q: is on no branch",
-    STATES.replace('"entropy"', '"heat"'): "'heat' does not fit; expected one of velocity, force",
+    STATES.replace('"entropy"', '"heat"'): "'heat' does not fit; expected 'velocity', 'force'",
     STATES + '\nr = { rate = "flow", between = ["a", "tank"] }': "the energy does not depend on it",
 }
 LAWS = {

@@ -54,7 +54,7 @@ def sample(kind):
     fields = {"kind": kind}
     for name, info in KINDS[kind].model_fields.items():
         pair = "tuple" in str(info.annotation)
-        if info.is_required() or name in {group[0] for group in KINDS[kind].row.one_of}:
+        if info.is_required() or name in KINDS[kind].row.form.one_of[:1]:
             fields[name] = ["a", "b"] if pair else "body"
     if kind == "storage":
         fields["states"] = {"q": {"rate": "force", "between": ["a", "b"]}}

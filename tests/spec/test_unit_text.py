@@ -66,8 +66,8 @@ def test_a_kind_gives_its_laws_and_letters_known_units(kind):
             assert quantity(parse_unit(unit).dimension, unit) == named, field
         for letter, unit in mark.units.items():
             assert unit == LETTERS.get(letter) or (letter == "v" and unit in {"V", "m/s"})
-    if KINDS[kind].row.letter and any(mark.units for mark in marks(kind).values()):
-        assert any(KINDS[kind].row.letter in mark.units for mark in marks(kind).values())
+    if KINDS[kind].row.form.letter and any(mark.units for mark in marks(kind).values()):
+        assert any(KINDS[kind].row.form.letter in mark.units for mark in marks(kind).values())
 
 
 def test_the_product_of_a_dissipative_law_and_its_letter_is_a_power():
@@ -94,15 +94,14 @@ def test_the_size_of_a_store_has_the_unit_of_its_law(domain):
         kind, costate = kind_of("store", domain, imposes), domain.variable(imposes)
         state, out = (parse_unit(u).dimension for u in (costate.state_unit, costate.unit))
         size = times(out, state, -1) if "rest" in kind.fields else times(state, out, -1)
-        own = marks(kind.name)[kind.one_of[0][0]]
+        own = marks(kind.name)[kind.form.one_of[0]]
         assert parse_unit(own.unit).dimension == size
 
 
 def test_a_ratio_has_the_unit_of_its_domains():
-    assert sum(len(form.ratios) for kind in TABLE for form in kind.forms) == 9
+    assert sum(len(kind.form.ratios) for kind in TABLE) == 9
     for kind in TABLE:
-        for form in kind.forms:
-            for first, second, unit in form.ratios:
-                given = first.through if form.role == ("gyrator",) else first.across
-                sizes = [parse_unit(u).dimension for u in (given.unit, second.across.unit)]
-                assert parse_unit(unit).dimension == times(*sizes, -1)
+        for first, second, unit in kind.form.ratios:
+            given = first.through if kind.form.role == ("gyrator",) else first.across
+            sizes = [parse_unit(u).dimension for u in (given.unit, second.across.unit)]
+            assert parse_unit(unit).dimension == times(*sizes, -1)

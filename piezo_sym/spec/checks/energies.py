@@ -23,10 +23,9 @@ def check_energies(spec: Tables) -> None:
     warm = temperatures(spec)
     hot = {"T": next(iter(warm.values()), ""), **warm, **{f"T_{b}": b for b in warm.values()}}
     for name, element in spec.elements.items():
-        for form in element.row.forms:
-            if fault := form.fault(element):
-                field, what, expected, remedy = fault
-                raise SpecError(what, f"elements.{name}{field}", expected, remedy)
+        if fault := element.row.form.fault(element):
+            field, what, expected, remedy = fault
+            raise SpecError(what, f"elements.{name}{field}", expected, remedy)
         for law in element.laws(name):
             if element.letter and law.letters == (element.letter,) and not element.is_body:
                 _check_law(spec, law, hot)

@@ -59,7 +59,9 @@ def are_all_margins(spec: Tables) -> bool:
 def _of_starts(spec: Tables) -> Iterator[Condition]:
     """Yield the conditions on where states start."""
     for name, element in spec.elements.items():
-        yield from (Condition(f"elements.{name}", test) for test in element.starts(name))
+        yield from (
+            Condition(f"elements.{name}", test) for test in element.row.form.starts(element, name)
+        )
 
 
 def _at(lane: int, words: Iterable[str], lanes: Mapping[str, Values]) -> dict[str, Value]:

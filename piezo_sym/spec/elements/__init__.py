@@ -14,12 +14,12 @@ KINDS: Mapping[str, type[Element]] = {kind.name: kind.made() for kind in TABLE}
 globals().update({kind.__name__: kind for kind in KINDS.values()})  # where pickle looks for them
 #: The letters of laws: of variables, states and T.
 LETTERS = frozenset(v.letter for d in DOMAINS for v in (d.across, d.through)) | {"T"}
-LETTERS |= {kind.letter for kind in TABLE}
+LETTERS |= {kind.form.letter for kind in TABLE}
 
 
 def kind_of(*role: Any) -> Kind:
-    """Return the kind that is one form of some role, such as the store of a domain."""
-    return next(kind for kind in TABLE if len(kind.forms) == 1 and kind.forms[0].role == role)
+    """Return the kind whose form has some role, such as the store of a domain."""
+    return next(kind for kind in TABLE if kind.form.role == role)
 
 
 def with_ratio_in(unit: Dimension, element: Element) -> Iterator[Kind]:
@@ -27,6 +27,6 @@ def with_ratio_in(unit: Dimension, element: Element) -> Iterator[Kind]:
     couplings = (port for port in element.ports("") if isinstance(port, Coupling))
     pairs = [{port.first_domain, port.second_domain} for port in couplings]
     for kind in TABLE:
-        for one, other, own in (row for form in kind.forms for row in form.ratios):
+        for one, other, own in kind.form.ratios:
             if {one, other} in pairs and parse_unit(own).dimension == unit:
                 yield kind

@@ -1,12 +1,11 @@
 """What every kind of element is: a frozen record of spec fields that states its ports.
 
 Input: a row of the table of kinds.  Output: a pydantic type whose values state `Port` records.  A
-kind is made of `Form`s, which say its fields, its docstring and its ports; see `forms`.
+kind has a `Form`, which says its fields, its docstring and its ports; see `forms`.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any, ClassVar, Literal, Self, cast, final
 
 from pydantic import (
@@ -68,7 +67,7 @@ class State:
 @final
 @dataclass(frozen=True, eq=False)
 class Form:
-    """A part of a kind: a store, a dissipation, a coupling, a source, a body ...; see `forms`.
+    """What a kind is: a store, a dissipation, a coupling, a source, a body ...; see `forms`.
 
     Attributes
     ----------
@@ -108,44 +107,29 @@ class Kind:
     ----------
     name : as a spec gives it.
     about : what it is, on one line.
-    forms : its parts; two are in series.
+    form : what it is to a spec and to a network.
     """
 
     name: str
     about: str
-    forms: tuple[Form, ...]
-
-    @property
-    def has_lanes(self) -> bool:
-        """Whether its elements may stand for the lanes of a bank."""
-        return all(form.has_lanes for form in self.forms)
-
-    @property
-    def letter(self) -> str:
-        """The letter of its state; empty for kinds without one."""
-        return next((form.letter for form in self.forms if form.letter), "")
-
-    @property
-    def one_of(self) -> tuple[tuple[str, ...], ...]:
-        """Groups of fields, of each of which exactly one is to be given."""
-        return tuple(form.one_of for form in self.forms if form.one_of)
+    form: Form
 
     @property
     def fields(self) -> Fields:
         """The fields of its elements."""
-        found = {name: field for form in self.forms for name, field in form.fields.items()}
+        found = dict(self.form.fields)
         first: Fields = {name: found.pop(name) for name in ("between", "at") if name in found}
-        types = {"count": Count | None, "bank": BankName, "series": Ends} if self.has_lanes else {}
+        lanes = self.form.has_lanes
+        types = {"count": Count | None, "bank": BankName, "series": Ends} if lanes else {}
         count: Fields = {name: (kind, None, None) for name, kind in types.items()}
-        state: Fields = {"state": (StateName, None, None)} if self.letter else {}
+        state: Fields = {"state": (StateName, None, None)} if self.form.letter else {}
         return {**first, **count, **found, **state}
 
     @property
     def doc(self) -> str:
         """The text of `piezo-sym kinds`, of the schema and of the type of its elements."""
-        lanes = (_LANES,) * self.has_lanes
-        parts = (self.about, *(form.doc for form in self.forms), *lanes)
-        return "\n\n".join((*parts, f"Example: {self.example}"))
+        lanes = (_LANES,) * self.form.has_lanes
+        return "\n\n".join((self.about, self.form.doc, *lanes, f"Example: {self.example}"))
 
     @property
     def example(self) -> str:
@@ -173,13 +157,13 @@ class Element(Frozen):
 
     @model_validator(mode="after")
     def _one_of_each(self) -> Self:
-        for group in self.row.one_of:
-            given = [field for field in group if getattr(self, field) is not None]
-            if len(given) != 1:
-                none = "neither" if len(group) == 2 else "none"
-                said = f"both {' and '.join(given)}" if given else none
-                message = f"exactly one of {', '.join(group)}; {said} given"
-                raise ValueError(message)
+        group = self.row.form.one_of
+        given = [field for field in group if getattr(self, field) is not None]
+        if group and len(given) != 1:
+            none = "neither" if len(group) == 2 else "none"
+            said = f"both {' and '.join(given)}" if given else none
+            message = f"exactly one of {', '.join(group)}; {said} given"
+            raise ValueError(message)
         return self
 
     @model_serializer(mode="wrap")
@@ -188,25 +172,13 @@ class Element(Frozen):
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the ports of this element, called `name` in its spec."""
-        first, last = getattr(self, "between", ("", ""))
-        forms = self.row.forms
-        nodes = (first, *(f"{name}:inner" for _ in forms[1:]), last)
-        parts = zip(forms, pairwise(nodes), strict=True)
-        return tuple(port for form, branch in parts for port in form.ports(self, name, branch))
+        return self.row.form.ports(self, name, getattr(self, "between", ("", "")))
 
     def own_states(self, name: str) -> tuple[State, ...]:
         """Return the states of this element, called `name` in its spec, in order."""
-        forms = (form for form in self.row.forms if form.letter)
-        own = (State(state_symbol(self, name), form.unit(self)) for form in forms)
-        return *own, *(State(word, s.unit) for word, s in getattr(self, "states", {}).items())
-
-    def requires(self, name: str) -> tuple[Cmp, ...]:
-        """Return the conditions that this element, called `name`, adds to the domain."""
-        return tuple(c for form in self.row.forms for c in form.requires(self, name))
-
-    def starts(self, name: str) -> tuple[Cmp, ...]:
-        """Return the conditions on where the states of this element, called `name`, start."""
-        return tuple(c for form in self.row.forms for c in form.starts(self, name))
+        if self.letter:
+            return (State(state_symbol(self, name), self.row.form.unit(self)),)
+        return tuple(State(word, s.unit) for word, s in getattr(self, "states", {}).items())
 
     def bank_of(self, name: str) -> str | None:
         """Return the bank that this element, called `name`, has one lane of: its own, or a cell's.
@@ -234,7 +206,7 @@ class Element(Frozen):
     @property
     def letter(self) -> str:
         """The letter of its state; empty for those without one."""
-        return self.row.letter
+        return self.row.form.letter
 
     def law(self, field: str) -> Expr:
         """Return the tree of a law field."""

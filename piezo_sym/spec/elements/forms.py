@@ -4,6 +4,7 @@ A form says once, for all domains, its fields, its docstring and its ports; see 
 `thermal` for the others.
 """
 
+from dataclasses import replace
 from typing import Any
 
 from piezo_sym.spec.elements.base import Form
@@ -140,6 +141,18 @@ def coupling(
         one_of=choices,
         ratios=tuple((first, domain, own) for domain, own in second),
     )
+
+
+def series(first: Form, second: Form) -> Form:
+    """Return a store and what is in series with it, behind a node of their own."""
+
+    def ports(element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
+        (start, end), inner = branch, f"{name}:inner"
+        one, two = first.ports(element, name, (start, inner)), second.ports
+        return *one, *two(element, name, (inner, end))
+
+    fields, doc = {**first.fields, **second.fields}, f"{first.doc}\n\n{second.doc}"
+    return replace(first, fields=fields, doc=doc, ports=ports, role=())
 
 
 def _equations(

@@ -3,7 +3,7 @@
 A new kind is a row here, a row in ``tests/networks/kinds.py`` and a line in the checker's table.
 """
 
-from piezo_sym.spec.elements.base import Form, Kind
+from piezo_sym.spec.elements.base import Kind
 from piezo_sym.spec.elements.domains import (
     ELECTRICAL,
     HYDRAULIC,
@@ -11,7 +11,7 @@ from piezo_sym.spec.elements.domains import (
     TRANSLATION,
     PowerVariable,
 )
-from piezo_sym.spec.elements.forms import coupling, dissipation, imposed
+from piezo_sym.spec.elements.forms import coupling, dissipation, imposed, series
 from piezo_sym.spec.elements.storage import SHARED_ENERGY
 from piezo_sym.spec.elements.stores import Size, store, yielding
 from piezo_sym.spec.elements.thermal import AMBIENT, BODY, CONDUCTION, HEAT_SOURCE, THERMOCOUPLE
@@ -54,91 +54,85 @@ _RACK = coupling("radius", "r", TRANSLATION, (ROTATION, "m"))
 _CYLINDER = coupling("area", "A", HYDRAULIC, (TRANSLATION, "m**2"), gyrates=True)
 _PUMP = coupling("displacement", "D", ROTATION, (HYDRAULIC, "m**3/rad"), gyrates=True)
 
-
-def _kind(name: str, about: str, *forms: Form) -> Kind:
-    return Kind(name, about, forms)
-
-
 TABLE = (
-    _kind(
+    Kind(
         "spring", "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).", _SPRING
     ),
-    _kind("mass", "A mass at a node, eq. (10) and the third term of (6).", _MASS),
-    _kind("damper", "A damper between two nodes, the damping term of eq. (10).", _DAMPER),
-    _kind(
+    Kind("mass", "A mass at a node, eq. (10) and the third term of (6).", _MASS),
+    Kind("damper", "A damper between two nodes, the damping term of eq. (10).", _DAMPER),
+    Kind(
         "stop",
         "An elastic-plastic element between two nodes, with hysteresis of any slowness.",
         _STOP,
     ),
-    _kind("lever", "An ideal lever between two pairs of nodes.", _LEVER),
-    _kind("force_source", "A force on a node, F_ext of eq. (10).", _FORCE),
-    _kind("velocity_source", "A velocity given to a node.", _VELOCITY),
-    _kind(
+    Kind("lever", "An ideal lever between two pairs of nodes.", _LEVER),
+    Kind("force_source", "A force on a node, F_ext of eq. (10).", _FORCE),
+    Kind("velocity_source", "A velocity given to a node.", _VELOCITY),
+    Kind(
         "capacitor",
         "A capacitor between two nodes, eq. (11) and the first term of (6).",
         _CAPACITOR,
     ),
-    _kind(
+    Kind(
         "inductor",
         "An inductor between two nodes, the storage half of a hysteron, eq. (12).",
         _INDUCTOR,
     ),
-    _kind("resistor", "A resistor between two nodes, V_R of section 3.2.", _RESISTOR),
-    _kind(
+    Kind("resistor", "A resistor between two nodes, V_R of section 3.2.", _RESISTOR),
+    Kind(
         "hysteron",
         "A hysteron, an inductor and a resistor in series: eq. (12), Assumption 2.",
-        _INDUCTOR,
-        _HYSTERESIS,
+        series(_INDUCTOR, _HYSTERESIS),
     ),
-    _kind("transformer", "An ideal transformer between two pairs of nodes.", _TRANSFORMER),
-    _kind("voltage_source", "A voltage between two nodes, V_in of eq. (12).", _VOLTAGE),
-    _kind("current_source", "A current given into a node.", _CURRENT),
-    _kind("inertia", "A moment of inertia at a node, the rotor of a machine.", _INERTIA),
-    _kind(
+    Kind("transformer", "An ideal transformer between two pairs of nodes.", _TRANSFORMER),
+    Kind("voltage_source", "A voltage between two nodes, V_in of eq. (12).", _VOLTAGE),
+    Kind("current_source", "A current given into a node.", _CURRENT),
+    Kind("inertia", "A moment of inertia at a node, the rotor of a machine.", _INERTIA),
+    Kind(
         "torsion_spring", "A torsion spring between two nodes, an elastic shaft.", _TORSION_SPRING
     ),
-    _kind("rotational_damper", "A rotational damper between two nodes, a bearing.", _BEARING),
-    _kind("gear", "An ideal gear between two pairs of nodes.", _GEAR),
-    _kind("torque_source", "A torque on a node.", _TORQUE),
-    _kind("angular_velocity_source", "An angular velocity given to a node.", _ANGULAR_VELOCITY),
-    _kind(
+    Kind("rotational_damper", "A rotational damper between two nodes, a bearing.", _BEARING),
+    Kind("gear", "An ideal gear between two pairs of nodes.", _GEAR),
+    Kind("torque_source", "A torque on a node.", _TORQUE),
+    Kind("angular_velocity_source", "An angular velocity given to a node.", _ANGULAR_VELOCITY),
+    Kind(
         "accumulator",
         "A hydraulic accumulator between two nodes, or the compressibility of a volume.",
         _ACCUMULATOR,
     ),
-    _kind(
+    Kind(
         "inertance",
         "A hydraulic inertance between two nodes, the fluid in a line that moves.",
         _INERTANCE,
     ),
-    _kind("orifice", "An orifice between two nodes, a valve or the friction of a line.", _ORIFICE),
-    _kind("flow_source", "A flow given into a node.", _FLOW),
-    _kind("pressure_source", "A pressure between two nodes.", _PRESSURE),
-    _kind(
+    Kind("orifice", "An orifice between two nodes, a valve or the friction of a line.", _ORIFICE),
+    Kind("flow_source", "A flow given into a node.", _FLOW),
+    Kind("pressure_source", "A pressure between two nodes.", _PRESSURE),
+    Kind(
         "transducer",
         "A piezoelectric transducer, the relations of Assumption 2: F = ratio*V, i = ratio*v.",
         _TRANSDUCER,
     ),
-    _kind(
+    Kind(
         "motor",
         "A voice coil or an electrical machine, without its coil, resistance and rotor.",
         _MOTOR,
     ),
-    _kind("rack", "A rack and pinion, or a drum with its rope.", _RACK),
-    _kind("cylinder", "A hydraulic cylinder: the pressure pushes its piston.", _CYLINDER),
-    _kind("pump", "A displacement pump, or a hydraulic motor.", _PUMP),
-    _kind(
+    Kind("rack", "A rack and pinion, or a drum with its rope.", _RACK),
+    Kind("cylinder", "A hydraulic cylinder: the pressure pushes its piston.", _CYLINDER),
+    Kind("pump", "A displacement pump, or a hydraulic motor.", _PUMP),
+    Kind(
         "storage",
         "A store with one energy of several states: variable inductance, gas and the like.",
         SHARED_ENERGY,
     ),
-    _kind("thermal_mass", "A body with a temperature, eqs. (8), (13).", BODY),
-    _kind("conduction", "Heat conduction between two bodies, a heat exchanger.", CONDUCTION),
-    _kind(
+    Kind("thermal_mass", "A body with a temperature, eqs. (8), (13).", BODY),
+    Kind("conduction", "Heat conduction between two bodies, a heat exchanger.", CONDUCTION),
+    Kind(
         "thermoelectric",
         "Thermoelectric couples, a Peltier cooler or a generator, without resistance.",
         THERMOCOUPLE,
     ),
-    _kind("ambient", "Heat exchange with the environment: the third input, eq. (8).", AMBIENT),
-    _kind("heat_source", "Heat into a body, a heater or a heat sink.", HEAT_SOURCE),
+    Kind("ambient", "Heat exchange with the environment: the third input, eq. (8).", AMBIENT),
+    Kind("heat_source", "Heat into a body, a heater or a heat sink.", HEAT_SOURCE),
 )
