@@ -89,14 +89,14 @@ def reading(field: GeneratorField, function: str) -> Iterator[None]:
     if function not in {"margins", "integrands"}:
         yield
         return
-    kept = field.signed, field.assumed, field.signs, field.forms, field.never
+    kept = field.signed, field.assumed, field.signs, field.forms, field.never, field.asked
     counts = (g for g, gen in enumerate(field.gens) if gen.kind == "name" and _counts(gen))
     field.signed, field.assumed = dict.fromkeys(counts, 2), {field.zero: 1}
-    field.signs, field.forms, field.never = {}, {}, {}
+    field.signs, field.forms, field.never, field.asked = {}, {}, {}, {}
     try:
         yield
     finally:
-        field.signed, field.assumed, field.signs, field.forms, field.never = kept
+        field.signed, field.assumed, field.signs, field.forms, field.never, field.asked = kept
 
 
 def _counts(gen: Generator) -> bool:

@@ -14,6 +14,8 @@ from math import ceil
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import power
+from piezo_sym.translation.numerator import vanishes
+from piezo_sym.translation.possible import impossible
 from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
 
 MOST_CASES = 500
@@ -32,9 +34,22 @@ def is_zero(value: Value, *, edges: Edges = frozenset()) -> bool:
     except NotShownError:
         if not letters:
             raise
+    if letters and _without_letters(value):
+        return True
     spelled = (_spelled(value, letter) for letter in sorted(letters, reverse=True))
     new = next((new for new in spelled if new != value), None)  # none if all are in sums over lanes
     return new is not None and is_zero(new, edges=edges)
+
+
+def _without_letters(value: Value) -> bool:
+    """Return whether a value without signs is zero with its letters written out at once."""
+    gens = value.field.gens
+    if any(gens[g].kind == "sign" for g in value.parts):
+        return False
+    try:
+        return vanishes(value, ("power", "letter"))
+    except NotShownError:
+        return False
 
 
 def edges_of(value: Value) -> Edges:
@@ -72,7 +87,7 @@ def _is_zero(value: Value, *, edges: Edges) -> bool:
         return all(is_zero(part, edges=edges) for part in parts)
     groups = _groups(value)
     if not groups:
-        return not cleared(value).terms
+        return vanishes(value)
     if _by_cases(value, groups, edges=edges):
         return True
     together = [tuple(d for group in groups for d in group)]
@@ -148,9 +163,15 @@ def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, edges: Edges
 
 def _common(cases: list[Case]) -> Value | None:
     """Return the value that all possible cases share, or None if that is not shown."""
-    if not cases or any(_differs(cases[0][0], case) for case in cases[1:]):
-        return None
-    return cases[0][0]
+    while cases:
+        (base, sides), *rest = cases
+        wrong = [case for case in rest if _differs(base, case)]
+        if all(impossible(case[1]) for case in wrong):
+            return base
+        if not impossible(sides):
+            return None
+        cases = rest
+    return None
 
 
 def _cases(
@@ -218,10 +239,17 @@ def _scales(first: Value, second: Value) -> Iterator[Value]:
 
 
 def _differs(base: Value, case: Case) -> bool:
-    """Return whether a case is not shown to have the value `base`."""
-    value = case[0] - base
-    for d, side in case[1].items():
-        value = value if side else _remainder(value, d)
+    """Return whether a case is possible and not shown to have the value `base`."""
+    value, edges = case[0] - base, {d: side for d, side in case[1].items() if side == 0}
+    others = {d: side for d, side in case[1].items() if side}
+    while edges:
+        d, _ = edges.popitem()
+        new = _solved(d)
+        value = put(value, new) if new else _remainder(value, d)
+        edges = {put(other, new): 0 for other in edges}
+        others = {put(other, new): side for other, side in others.items()}
+        if any(side not in sides_of(other) for other, side in (*edges.items(), *others.items())):
+            return False
     return not is_zero(value)
 
 
@@ -243,6 +271,27 @@ def _remainder(value: Value, d: Value) -> Value:
                 return value
             value = value - Value(field, high) * below * d
     return value
+
+
+def _solved(d: Value) -> dict[int, Value]:
+    """Return what a generator is where d = 0, if d is linear in it by a factor that is not zero."""
+    field = d.field
+    for g in sorted(
+        d.generators(), key=lambda g: (field.gens[g].kind != "name", not field.gens[g].lanes)
+    ):
+        gen = field.gens[g]
+        own = {mono: c for mono, c in d.terms.items() if g in dict(mono)}
+        powers = {dict(mono)[g] for mono in own}
+        if len(powers) > 1 or gen.kind == "sum" or (d.lanes and not gen.lanes):
+            continue
+        rest = d - Value(field, own)
+        factor = Value(field, {tuple(p for p in m if p[0] != g): c for m, c in own.items()})
+        if g in factor.parts | rest.parts or (powers != {1} and (rest.terms or min(powers) < 0)):
+            continue
+        if not has_sign(factor):
+            continue
+        return {g: -(rest * _inverse(factor))}
+    return {}
 
 
 def _inverse(value: Value) -> Value:

@@ -35,15 +35,15 @@ class Steps:
     """A run that stands at a state, and takes equal steps over kinks."""
 
     def __init__(self, system, x, stages, h):
-        stepping = Stepping(stages, 1.0, h, h, fixed=h)
+        self.stepping = stepping = Stepping(stages, 1.0, h, h, fixed=h)
         times = np.empty(0)
         args = engine_of(system.module), [system.parameters], x[None], system.inputs, times
         self.batch = Batch(*args, stepping, "one")
 
     def take(self, count):
-        """Take some steps; return whether they are done."""
-        self.batch.go(count)
-        return bool(self.batch.records[0]["steps"] == count)
+        """Take some steps and end there; return whether they are done."""
+        self.batch.go_on(self.stepping, self.t + count * self.stepping.fixed)
+        return self.finish() and bool(self.batch.records[0]["steps"] == count)
 
     def finish(self):
         """Step to the end; return whether there is a way."""
@@ -57,7 +57,7 @@ class Steps:
 
     @property
     def x(self):
-        return self.batch.here()[0]
+        return self.batch.x[0]
 
     @property
     def iterations(self):

@@ -9,9 +9,12 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from piezo_sym.translation.change import spelled
 from piezo_sym.translation.expressions import PLAIN, Expressions
 from piezo_sym.translation.field import GeneratorField, NotShownError
+from piezo_sym.translation.numerator import vanishes
 from piezo_sym.translation.witness import UNDECIDED, WitnessPoint
+from piezo_sym.translation.zero import cleared
 
 SMOOTH = ("exp", "log", "sqrt", "sin", "cos", "tanh", "expm1", "atan", "sinh", "cosh", "erf")
 CALLS = (*SMOOTH, "abs", "sign")
@@ -98,3 +101,26 @@ def test_factors_of_a_sum_lose_no_number(text, point):
         node = ast.parse(whole, mode="eval").body
         found = WitnessPoint(SimpleNamespace(field=field), numbers).value(read(node)[0], {})
         assert float(found) == pytest.approx(number(node, at))
+
+
+#: Values without signs, for which a numerator can be taken.
+RATIOS = st.recursive(
+    LEAVES,
+    lambda inner: st.one_of(
+        st.tuples(st.sampled_from("+-*/"), inner, inner).map(lambda p: f"({p[1]} {p[0]} {p[2]})"),
+        st.tuples(st.sampled_from(["exp", "sqrt"]), inner).map(lambda p: f"{p[0]}({p[1]})"),
+        st.tuples(inner, st.sampled_from(["(-2)", "(1/3)", "(-3/2)"])).map("**".join),
+    ),
+    max_leaves=8,
+)
+
+
+@given(RATIOS, RATIOS, st.sampled_from(["{0}", "1/(1/({0}) + 1/({1})) - ({0})*({1})/({0} + {1})"]))
+def test_a_numerator_has_no_terms_where_the_product_with_all_denominators_has_none(one, other, law):
+    _, read = reader()
+    try:
+        value = spelled(read.numeric(ast.parse(law.format(one, other), mode="eval").body)[0])
+        expected = not cleared(value).terms
+    except NotShownError:
+        assume(False)
+    assert vanishes(value) == expected
