@@ -14,7 +14,7 @@ import numpy as np
 from element_balances import check_elements
 from kinds import KINDS
 from law_values import value
-from network_tableau import Tableau, pairs_of, state
+from network_tableau import Tableau, entropy_of, pairs_of, state
 from precise import DIGITS, measured
 
 from piezo_sym import Model, PiezoError, derive
@@ -92,7 +92,7 @@ def point(spec, iphs, seed):
     """Return a state, currents and entropies inside the domain, and inputs."""
     rng = np.random.default_rng(seed)
     symbols = iphs.expand().x
-    bodies = {state(n, e) for n, e in spec["elements"].items() if e["kind"] == "thermal_mass"}
+    bodies = {entropy_of(n, e) for n, e in spec["elements"].items()}
     x = [rng.uniform(0.05, 1) if s.name in bodies else rng.uniform(-1.5, 1.5) for s in symbols]
     heat = [entry["unit"] == "K" for entry in spec["inputs"].values()]
     return np.array(x), np.array([rng.uniform(2, 5) if h else rng.uniform(-1.5, 1.5) for h in heat])
@@ -124,7 +124,7 @@ def ends_of(element):
     """Return the nodes of an element."""
     if KINDS[element["kind"]].form == "coupling":
         return pairs_of(element)
-    inner = (tuple(entry["between"]) for entry in element.get("states", {}).values())
+    inner = (tuple(entry.get("between", ())) for entry in element.get("states", {}).values())
     return (element.get("between", ()), (element["at"],) if "at" in element else (), *inner)
 
 
@@ -279,7 +279,7 @@ def check_entropy(module, spec, x, u):
     """Check that entropy grows by what is produced and by what environments and heaters bring."""
     p = module.Parameters()
     names, given = spread(module.STATES, p), dict(zip(spec["inputs"], u, strict=True))
-    bodies = {n: state(n, e) for n, e in spec["elements"].items() if e["kind"] == "thermal_mass"}
+    bodies = [s for n, e in spec["elements"].items() if (s := entropy_of(n, e))]
     rates = dict(zip(names, module.rhs(x, u, p), strict=True))
     hot = dict(zip((r.name for r in module.BODIES), module.temperatures(x, p), strict=True))
     produced = module.entropy_production(x, u, p)
@@ -293,8 +293,8 @@ def check_entropy(module, spec, x, u):
     heaters = [e for e in spec["elements"].values() if e["kind"] == "heat_source"]
     brought += [given[e["input"]] / hot[e["into"]] for e in heaters]
     terms = [*produced, *brought]
-    growth = sum(rates[s] for s in bodies.values())
-    size = sum(map(abs, terms)) + sum(abs(rates[s]) for s in bodies.values())
+    growth = sum(rates[s] for s in bodies)
+    size = sum(map(abs, terms)) + sum(abs(rates[s]) for s in bodies)
     assert abs(growth - sum(terms)) <= 1e-12 * max(size, 1e-6)
 
 

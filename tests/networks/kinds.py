@@ -88,59 +88,61 @@ def stiff(draft):
     form = draft.pick(forms[:5]) if not draft.one_in(30) else forms[5]
     form = k if draft.role == "tied" else form
     ends, law = draft.pair(KINDS[draft.kind].domains), {"stiffness": form, **rest}
-    if draft.role != "tied" and draft.one_in(5):
-        field = KINDS[draft.kind].itself
-        laws = (
-            f"{k}*{x} if {x} < 0.5 else 4*{k}*{x} - 1.5*{k}",
-            f"{k}*sinh({x})",
-            f"{k}*tanh({x})",
-        )
-        energies = (f"{k}*{x}**2/2", f"{k}*max({x} - 0.2, 0)**2", f"{k}*cosh({x})")
-        law = {field: draft.pick(laws)} if draft.one_in(2) else {"energy": draft.pick(energies)}
-    return {"between": ends, **law, **draft.state()}
+    return {"between": ends, **itself(draft, k, law), **draft.state()}
+
+
+def itself(draft, k, otherwise):
+    """Return a store's law of its co-state, or its energy, that rise by k; mostly the other law."""
+    if draft.role == "tied" or not draft.one_in(5):
+        return otherwise
+    x = KINDS[draft.kind].letter
+    laws = (f"{k}*{x} if {x} < 0.5 else 4*{k}*{x} - 1.5*{k}", f"{k}*sinh({x})", f"{k}*tanh({x})")
+    energies = (f"{k}*{x}**2/2", f"{k}*max({x} - 0.2, 0)**2", f"{k}*cosh({x})")
+    field, texts = draft.pick(((KINDS[draft.kind].itself, laws), ("energy", energies)))
+    return {field: draft.pick(texts)}
 
 
 def inert(draft):
     """Return a mass's or an inertia's fields."""
     field, unit = KINDS[draft.kind].size
     m = draft.parameter("m", unit)
-    return {"at": draft.at(), field: draft.pick((m, m, f"2*{m}")), **draft.state()}
+    law = itself(draft, m, {field: draft.pick((m, m, f"2*{m}"))})
+    return {"at": draft.at(), **law, **draft.state()}
 
 
 def capacitor(draft):
     capacity = draft.parameter("C", "F")
     form = f"{capacity}/(1 + Q**2)" if draft.one_in(50) else capacity
-    return {"between": draft.pair("e"), "capacitance": form, **draft.state()}
+    law = itself(draft, capacity, {"capacitance": form})
+    return {"between": draft.pair("e"), **law, **draft.state()}
 
 
 def of_fluid(draft):
     """Return an accumulator's or an inertance's fields."""
     field, unit = KINDS[draft.kind].size
-    return {"between": draft.pair("h"), field: draft.parameter("C", unit), **draft.state()}
+    size = draft.parameter("C", unit)
+    return {"between": draft.pair("h"), **itself(draft, size, {field: size}), **draft.state()}
 
 
-def inductance(draft, *, saturates=True):
+def saturating(draft, linear):
     """Return an inductance; some saturate, and in a bank each lane by itself."""
-    linear = draft.parameter("L", "H")
-    return f"{linear}/(1 + phi**2)" if saturates and draft.one_in(8) else linear
+    return f"{linear}/(1 + phi**2)" if draft.one_in(8) else linear
 
 
 def inductor(draft):
-    return {
-        "between": draft.pair("e"),
-        "inductance": inductance(draft),
-        **draft.state(),
-    }
+    linear = draft.parameter("L", "H")
+    law = itself(draft, linear, {"inductance": saturating(draft, linear)})
+    return {"between": draft.pair("e"), **law, **draft.state()}
 
 
 def hysteron(draft):
     body = draft.body()
     linear = draft.one_in(2)  # row program stays open for a kink of a current that saturates
-    state = draft.state()
+    state, size = draft.state(), draft.parameter("L", "H")
     own = state.get("state", f"phi_{draft.name}")
     return {
         "between": draft.pair("e"),
-        "inductance": inductance(draft, saturates=linear),
+        "inductance": saturating(draft, size) if linear else size,
         "voltage": law(draft, "i", body, linear=linear, own=own),
         "heats": body,
         **state,
@@ -237,7 +239,7 @@ def thermoelectric(draft):
 
 
 def storage(draft):
-    """Return an energy of a flux and an extension."""
+    """Return an energy of a flux and an extension, at times of an entropy, too: a body then."""
     L, k = draft.parameter("L", "H"), draft.parameter("k", "N/m")
     draft.assume.append(f"{L} > 0")
     phi, x = f"phi_{draft.name}", f"x_{draft.name}"
@@ -245,7 +247,20 @@ def storage(draft):
     alone = (f"{k}*{x}**2/2", f"{k}*{x}*abs({x})**2", f"{k}/2*max({x} - 0.3, 0)**2 + {k}*{x}")
     states = {phi: {"rate": "voltage", "between": draft.pair("e")}}
     states[x] = {"rate": "velocity", "between": draft.pair("m")}
-    return {"energy": f"{draft.pick(coupled)} + {draft.pick(alone)}", "states": states}
+    energy = f"{draft.pick(coupled)} + {draft.pick(alone)}"
+    if draft.one_in(3):
+        low, c, S = (
+            draft.parameter("T_0", "K", 1, 3),
+            draft.parameter("c", "J/K", 1, 3),
+            "S_" + draft.name,
+        )
+        hot = (f"(1 + {x}**2/2)", f"(1 + {phi}**2/3)", f"(1 + exp({x})/4)")
+        heated = f"{low}*{c}*exp({S}/{c})*{draft.pick(hot)}"
+        energy = f"{heated} + {draft.pick((energy, f'{phi}**2/{L}'))}"
+        draft.bodies[draft.name] = low
+        draft.assume.append(f"{low} > 0")
+        states[S] = {"rate": "entropy"}
+    return {"energy": energy, "states": states}
 
 
 def source(draft):
@@ -273,6 +288,7 @@ class Kind:
         that does not, gyrates.
     nodes : the fields that name nodes.
     letter, costate : of a store; the co-state is found from the words of a law and from its laws.
+    itself : the field in which a store says its co-state.
     size : what `draw` asks for: units, a letter, the field of a store.
     ratio : the field of a coupling's ratio.
     laws : field -> (the letter of what it is given, whether it gives the across variable).
@@ -288,13 +304,9 @@ class Kind:
     ratio: str = "ratio"
     letter: str = ""
     costate: Callable | None = None
+    itself: str = ""
     laws: Mapping[str, tuple[str, bool]] = field(default_factory=dict)
     weight: int = 1
-
-    @property
-    def itself(self):
-        """The field in which a spring says its co-state."""
-        return {"q": "force", "theta": "torque"}.get(self.letter, "")
 
     @property
     def in_tree(self):
@@ -326,7 +338,15 @@ PAIRS = ("first", "second")
 BOTH = ("electrical", "mechanical", "translation")
 KINDS = {
     "stop": Kind(stop, "m", "stop", across=False, letter="z"),
-    "capacitor": Kind(capacitor, "e", "store", letter="Q", costate=over("capacitance"), weight=2),
+    "capacitor": Kind(
+        capacitor,
+        "e",
+        "store",
+        letter="Q",
+        costate=over("capacitance"),
+        itself="voltage",
+        weight=2,
+    ),
     "mass": Kind(
         inert,
         "m",
@@ -335,6 +355,7 @@ KINDS = {
         size=("mass", "kg"),
         letter="p",
         costate=over("mass"),
+        itself="velocity",
         weight=3,
     ),
     "inertia": Kind(
@@ -345,6 +366,7 @@ KINDS = {
         size=("inertia", "kg*m**2"),
         letter="L",
         costate=over("inertia"),
+        itself="angular_velocity",
         weight=3,
     ),
     "accumulator": Kind(
@@ -354,10 +376,17 @@ KINDS = {
         size=("capacitance", "m**3/Pa"),
         letter="V",
         costate=over("capacitance"),
+        itself="pressure",
         weight=2,
     ),
     "inductor": Kind(
-        inductor, "e", "store", across=False, letter="phi", costate=over("inductance")
+        inductor,
+        "e",
+        "store",
+        across=False,
+        letter="phi",
+        costate=over("inductance"),
+        itself="current",
     ),
     "inertance": Kind(
         of_fluid,
@@ -367,6 +396,7 @@ KINDS = {
         size=("inertance", "Pa*s**2/m**3"),
         letter="G",
         costate=over("inertance"),
+        itself="flow",
     ),
     "hysteron": Kind(
         hysteron,
@@ -386,6 +416,7 @@ KINDS = {
         size=("q", "N/m", "m"),
         letter="q",
         costate=of_spring,
+        itself="force",
         weight=2,
     ),
     "torsion_spring": Kind(
@@ -396,6 +427,7 @@ KINDS = {
         size=("theta", "N*m/rad", "rad"),
         letter="theta",
         costate=of_spring,
+        itself="torque",
         weight=2,
     ),
     "storage": Kind(storage, "em", "storage", across=False, nodes=(), weight=2),

@@ -66,9 +66,8 @@ class Tableau:
         self.inner = self._inner()
         elements = spec["elements"].items()
         for name, element in elements:
-            if element["kind"] == "thermal_mass":
-                words = {**self.words(), "S": states[state(name, element)]}
-                self.temperatures[name] = value(element["temperature"], words)
+            if entropy_of(name, element):
+                self.temperatures[name] = self._temperature(name, element)
         self.pumped = {body for _, element in elements for body in element.get("bodies", ())}
         for name, element in elements:
             self._add(name, element)
@@ -135,9 +134,16 @@ class Tableau:
                 self._resistor(label, lane, element, nodes, name)
         elif kind.form == "coupling":
             self.couplings.append((name, element))
-        elif element["kind"] == "thermal_mass" and name in self.pumped:
+        if name in self.pumped:
             given = self.temperatures[name]
             self.branches.append(Branch(name, (f"{name}:body", ":zero"), across=True, given=given))
+
+    def _temperature(self, name, element):
+        """Return the temperature of a body, or of a storage with an entropy."""
+        symbol = entropy_of(name, element)
+        if "energy" in element:
+            return slope(element["energy"], {**self.words(), **self.states}, symbol)
+        return value(element["temperature"], {**self.words(), "S": self.states[symbol]})
 
     def _store(self, label, lane, element, nodes, name):
         kind = KINDS[element["kind"]]
@@ -165,6 +171,8 @@ class Tableau:
     def _storage(self, name, element):
         """Add a branch for each state; co-states are differences of the energy."""
         for symbol, entry in element["states"].items():
+            if entry["rate"] == "entropy":
+                continue
             given = slope(element["energy"], {**self.words(), **self.states}, symbol)
             nodes = tuple(entry["between"])
             across = entry["rate"] in {"current", "force", "torque", "flow"}
@@ -351,7 +359,7 @@ class Tableau:
         for name, element in self.spec["elements"].items():
             self._book_heat(found, flows, name, element)
         for name, flow in flows.items():
-            found.rates[state(name, self.spec["elements"][name])] = flow
+            found.rates[entropy_of(name, self.spec["elements"][name])] = flow
         return found
 
     def _book(self, found, flows, branch, e, t):
@@ -361,6 +369,8 @@ class Tableau:
             temperature = self.temperatures[element["heats"]]
             found.productions[branch.element] = heat / temperature
             flows[element["heats"]] += heat / temperature
+        elif branch.state:
+            found.rates[branch.state] = t if branch.across else e
         elif name in flows:
             flows[name] += t
         elif branch.element in self.limits:
@@ -370,8 +380,6 @@ class Tableau:
             produced = t * slip / self.temperatures[element["heats"]]
             found.productions[branch.element] = produced
             flows[element["heats"]] += produced
-        elif branch.state:
-            found.rates[branch.state] = t if branch.across else e
         elif KINDS[element["kind"]].form == "source":
             found.outputs[name] = -t if branch.across else e
         else:
@@ -420,6 +428,14 @@ def bank_of(name, element):
 def state(name, element):
     """Return the symbol of an element's state."""
     return element.get("state", f"{KINDS[element['kind']].letter}_{name}")
+
+
+def entropy_of(name, element):
+    """Return the symbol of the entropy of an element that is a body, else an empty text."""
+    if element["kind"] == "thermal_mass":
+        return state(name, element)
+    states = element.get("states", {}).items()
+    return next((symbol for symbol, entry in states if entry["rate"] == "entropy"), "")
 
 
 def nodes_of(element):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from hypothesis import HealthCheck, given, reject, seed, settings
 from hypothesis import strategies as st
 from kinds import KINDS
-from network_tableau import NODES, state
+from network_tableau import NODES, entropy_of, state
 
 from piezo_sym import Model, PiezoError, derive
 
@@ -195,7 +195,8 @@ def _chord(draft, domain, ends):
 def _uses(draft, node):
     elements = draft.elements.values()
     ends = [element.get(f, ()) for element in elements for f in NODES]
-    ends += [s["between"] for element in elements for s in element.get("states", {}).values()]
+    inner = [s for element in elements for s in element.get("states", {}).values()]
+    ends += [s["between"] for s in inner if "between" in s]
     return sum(node == end or node in end for end in ends if not isinstance(end, str)) + sum(
         node == end for end in ends if isinstance(end, str)
     )
@@ -317,7 +318,7 @@ def networks(draw):
         "parameters": draft.parameters,
         "inputs": draft.inputs,
         "domain": {"assume": [*above, *draft.assume]},
-        "initial": {draft.elements[name].get("state", f"S_{name}"): 0.1 for name in bodies},
+        "initial": {entropy_of(name, draft.elements[name]): 0.1 for name in bodies},
         "elements": {name: draft.elements[name] for name in order},
     }
 

@@ -5,7 +5,7 @@ import ast
 import pytest
 from agreement import DERIVED, check
 from kinds import KINDS
-from network_tableau import state
+from network_tableau import entropy_of, state
 from strategy import explore
 
 from piezo_sym import Model, PiezoError, derive
@@ -19,6 +19,8 @@ MORE = (
     "joined stores",
     "a law of another's state",
     "a law of another's temperature",
+    "a store's own law",
+    "a storage with an entropy",
 )
 
 
@@ -34,6 +36,8 @@ def features(spec, _):
     except PiezoError:
         return set()
     elements = spec["elements"].values()
+    stores = [e for e in elements if KINDS[e["kind"]].itself]
+    storages = {n: e for n, e in spec["elements"].items() if e["kind"] == "storage"}
     values = [entry["value"] for entry in spec["parameters"].values()]
     symbols = {state(n, e) for n, e in spec["elements"].items() if KINDS[e["kind"]].letter}
     fields = ("voltage", "current", "force", "velocity", "ratio", "conductance")
@@ -41,6 +45,8 @@ def features(spec, _):
     has = {
         "a law of another's state": any(symbols & words(law) for law in laws),
         "a law of another's temperature": any("T_bo" in law or "T_th" in law for law in laws),
+        "a store's own law": any(KINDS[e["kind"]].itself in e or "energy" in e for e in stores),
+        "a storage with an entropy": any(map(entropy_of, storages, storages.values())),
         "a list of values": any(isinstance(value, list) for value in values),
         "a loop of resistors": bool(iphs.junction.slopes),
         "joined stores": bool(iphs.junction.joints),
