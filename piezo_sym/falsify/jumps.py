@@ -15,6 +15,7 @@ from typing import Any, final
 import numpy as np
 from flint import ctx, fmpq
 
+from piezo_sym.expressions.exact_eval import exact as exactly
 from piezo_sym.falsify.claims import Claim
 from piezo_sym.falsify.exact import BITS, Exact, Point, text
 from piezo_sym.falsify.points import Roots
@@ -30,7 +31,7 @@ FADED = Fraction(1, 10**6)
 NEAR, NEARER, SAME = Fraction(1, 10**40), Fraction(1, 10**80), Fraction(9, 10)
 #: The kink may lie beside the one found in floating point, by these parts of its place.
 WIDER = (Fraction(0), Fraction(1, 10**15), Fraction(1, 10**12))
-Values = list[Any] | None
+Values = list[Any]
 
 
 def jump(
@@ -86,26 +87,29 @@ def _confirmed(
     claim: Claim, space: Space, low: Array, high: Array, leap: float, exact: Exact
 ) -> str | None:
     """Return the jump of a law between two points, or None if it fades as they meet."""
-    point = [Fraction(v) for v in low.tolist()]
     column = int(np.flatnonzero(low != high)[0])
-    near, far = point[column], Fraction(float(high[column]))
+    near, far = (Fraction(float(side[column])) for side in (low, high))
+    point = [exactly(value) for value in low.tolist()]
+
+    def there(value: Fraction) -> Point:
+        return Point(exact, space, [*point[:column], value, *point[column + 1 :]])
 
     def values_at(value: Fraction) -> Values:
-        at = exact.at(space, [*point[:column], value, *point[column + 1 :]])
-        return _watched(claim, at) if at.inside else None
+        return _watched(claim, there(value))
 
     for wider in WIDER:
         off = wider * max(abs(near), abs(far)) * (1 if far > near else -1)
         if _gap(values_at(near - off), values_at(far + off)) > Fraction(leap) / 10:
-            gap = _narrowed(values_at, near - off, far + off)
-            shown = f"its values differ by {text(gap or 0)} at a distance of {float(NEARER):g}"
-            return shown if gap else None
+            found = _narrowed(values_at, near - off, far + off)
+            if not found or not all(there(side).inside for side in found[1]):
+                return None
+            return f"its values differ by {text(found[0])} at a distance of {float(NEARER):g}"
     return None
 
 
 def _narrowed(
     values_at: Callable[[Fraction], Values], low: Fraction, high: Fraction
-) -> Fraction | None:
+) -> tuple[Fraction, tuple[Fraction, Fraction]] | None:
     """Return by how much values differ on two sides that come together, if it does not fade."""
     scale, gaps = max(abs(low), abs(high)), []
     one, other = values_at(low), values_at(high)
@@ -115,7 +119,7 @@ def _narrowed(
             middle = (low + high) / 2
             value = values_at(middle)
             left, right = _gap(one, value), _gap(value, other)
-            if value is None or gap <= FADED * most:
+            if gap <= FADED * most:
                 return None
             calm = (
                 1000 * min(left, right) <= max(left, right) or max(left, right) > SAME * 3 * gap / 2
@@ -127,7 +131,7 @@ def _narrowed(
             else:
                 low, one, gap = middle, value, right
         gaps.append(gap)
-    return gaps[1] if gaps[1] > SAME * gaps[0] else None
+    return (gaps[1], (low, high)) if gaps[1] > SAME * gaps[0] else None
 
 
 def _watched(claim: Claim, at: Point) -> list[Any]:

@@ -32,7 +32,7 @@ LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
 #: A power with a smaller exponent hardly changes over tens of decades of its base.
 STEEP = 0.01
 #: States times points that the module evaluates together; its `rhs` splits larger arrays.
-BLOCK = 100_000
+BLOCK = 300_000
 #: Of large systems fewer points together would cost as much; and points times columns squared.
 FEWEST, MOST = 1024, 10**9
 

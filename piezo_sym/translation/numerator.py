@@ -29,12 +29,12 @@ class _Roots:
     ring : the polynomials in the variables y.
     """
 
-    def __init__(self, value: Value) -> None:
-        self.gens = value.field.gens
-        self.order = sorted(value.parts)
+    def __init__(self, *values: Value) -> None:
+        self.gens = values[0].field.gens
+        self.order = sorted(frozenset[int]().union(*(value.parts for value in values)))
         self.place = {g: n for n, g in enumerate(self.order)}
         self.whole = dict.fromkeys(self.order, 1)
-        for one in (value, *(arg for g in self.order if (arg := self.gens[g].arg))):
+        for one in (*values, *(arg for g in self.order if (arg := self.gens[g].arg))):
             for g, e in (factor for mono in one.terms for factor in mono):
                 self.whole[g] = lcm(self.whole[g], Fraction(e).denominator)
         names = tuple(f"y{g}" for g in self.order)
@@ -56,23 +56,31 @@ class _Roots:
 
     def written_out(self, value: fmpq_mpoly, g: int) -> fmpq_mpoly:
         """Return a multiple of a polynomial, without whole powers of a generator."""
-        n, arg = self.place[g], self.gens[g].arg
+        n, whole, arg = self.place[g], self.whole[g], self.gens[g].arg
         assert arg is not None
-        parts: dict[int, dict[tuple[int, ...], fmpq]] = {}
-        for exponents, c in value.to_dict().items():
-            times, left = divmod(exponents[n], self.whole[g])
-            rest = (*exponents[:n], left, *exponents[n + 1 :])
-            parts.setdefault(times, {})[rest] = c
-        if max(parts, default=0) == 0:
+        most = value.degrees()[n] // whole
+        if most < 1:
             return value
         above, below = self.of(arg)
-        most, made = max(parts), self.ring.from_dict({})
-        for times, terms in parts.items():
-            part = self.ring.from_dict(terms) * below ** (most - times)
-            for _ in range(times):
+        y, made = self.ring.gen(n), self.ring.from_dict({})
+        for k in range(value.degrees()[n], whole - 1, -1):
+            part = value
+            for order in range(1, k + 1):
+                part = part.derivative(n) / order
+            value -= part * y**k
+            part *= y ** (k % whole) * below ** (most - k // whole)
+            for _ in range(k // whole):
                 part = _product(part, above)
             made += part
-        return made
+        return made + value * below**most
+
+    def numerator(self, value: Value, kinds: Collection[str]) -> fmpq_mpoly:
+        """Return a value times its denominators, generators of some kinds written out."""
+        found, _ = self.of(value)
+        for g in reversed(self.order):
+            if self.gens[g].kind in kinds:
+                found = self.written_out(found, g)
+        return found
 
 
 def vanishes(value: Value, kinds: Collection[str] = ("power",)) -> bool:
@@ -80,14 +88,14 @@ def vanishes(value: Value, kinds: Collection[str] = ("power",)) -> bool:
 
     Whole powers of generators of the given `kinds` are replaced by those of their arguments.
     """
-    if not value.terms:
-        return True
-    roots = _Roots(value)
-    found, _ = roots.of(value)
-    for g in reversed(roots.order):
-        if roots.gens[g].kind in kinds:
-            found = roots.written_out(found, g)
-    return bool(found.is_zero())
+    return not value.terms or bool(_Roots(value).numerator(value, kinds).is_zero())
+
+
+def vanishes_with(value: Value, other: Value) -> bool:
+    """Return whether a value is shown to be zero where another is: a multiple of its numerator."""
+    roots = _Roots(value, other)
+    above, below = (roots.numerator(one, ("power", "letter")) for one in (value, other))
+    return not below.is_zero() and bool(divmod(above, below)[1].is_zero())
 
 
 def _product(left: fmpq_mpoly, right: fmpq_mpoly) -> fmpq_mpoly:

@@ -14,7 +14,7 @@ from math import ceil
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import power
-from piezo_sym.translation.numerator import vanishes
+from piezo_sym.translation.numerator import vanishes, vanishes_with
 from piezo_sym.translation.possible import impossible
 from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
 
@@ -244,6 +244,8 @@ def _differs(base: Value, case: Case) -> bool:
     others = {d: side for d, side in case[1].items() if side}
     while edges:
         d, _ = edges.popitem()
+        if vanishes_with(value, d):
+            return False
         new = _solved(d)
         value = put(value, new) if new else _remainder(value, d)
         edges = {put(other, new): 0 for other in edges}

@@ -52,13 +52,20 @@ def test_it_is_hottest_inside():
     assert T[1] > max(T[0], T[2]) > 298.15
 
 
-@pytest.mark.parametrize(("n", "most"), [(20, 15), pytest.param(200, 60, marks=pytest.mark.long)])
-def test_time_to_prove_it_grows_with_its_layers(n, most):
-    model, begun = layered(n), process_time()
+@pytest.mark.parametrize("n", [10, pytest.param(100, marks=pytest.mark.long)])
+def test_time_to_prove_it_grows_with_its_layers(n):
+    """The time per layer grows, though not by as much as their number."""
+    one, two = (proving(layers) for layers in (n, 2 * n))
+    assert two < 4 * one
+
+
+def proving(layers):
+    """Return the time that it takes to prove a stack [s]."""
+    model, begun = layered(layers), process_time()
     *_, report = examine(derive(model))
-    assert process_time() - begun < most
     assert {row.verdict for row in report.rows} == {Verdict.PROVED}
     assert {row.points > 0 for row in report.rows if row.id in ATTACKED} == {True}
+    return process_time() - begun
 
 
 @pytest.mark.parametrize("n", [0, -1, 2.0, True, "3", None])
