@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import product
-from math import ceil
 
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
@@ -19,7 +18,6 @@ from piezo_sym.translation.possible import impossible
 from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
 
 MOST_CASES = 500
-MOST_STEPS = 12
 Case = tuple[Value, dict[Value, int]]
 Edges = frozenset[Value]
 
@@ -92,21 +90,6 @@ def _is_zero(value: Value, *, edges: Edges) -> bool:
         return True
     together = [tuple(d for group in groups for d in group)]
     return len(groups) > 1 and _by_cases(value, together, edges=edges)
-
-
-def cleared(value: Value) -> Value:
-    """Return a value times its denominators that are sums."""
-    field = value.field
-    while True:
-        least: dict[int, Fraction] = {}
-        for mono in value.terms:
-            for g, e in mono:
-                if e < 0 and field.gens[g].kind == "power":
-                    least[g] = min(least.get(g, Fraction(0)), Fraction(e))
-        if not least:
-            return value
-        g, e = next(iter(least.items()))
-        value = value * Value(field, {((g, ceil(-e)),): 1})  # still a power where e is no number
 
 
 def _apart(value: Value) -> list[Value]:
@@ -247,32 +230,12 @@ def _differs(base: Value, case: Case) -> bool:
         if vanishes_with(value, d):
             return False
         new = _solved(d)
-        value = put(value, new) if new else _remainder(value, d)
+        value = put(value, new)
         edges = {put(other, new): 0 for other in edges}
         others = {put(other, new): side for other, side in others.items()}
         if any(side not in sides_of(other) for other, side in (*edges.items(), *others.items())):
             return False
     return not is_zero(value)
-
-
-def _remainder(value: Value, d: Value) -> Value:
-    """Return the remainder of a value by d, in a generator whose leading factor in d is nonzero."""
-    field, value = d.field, cleared(value)
-    for g in sorted(d.generators()):
-        powers = {mono: dict(mono).get(g, 0) for mono in d.terms}
-        top = max(powers.values())
-        head = Value(field, {mono: c for mono, c in d.terms.items() if powers[mono] == top})
-        factor = head * Value(field, {((g, -top),): 1})
-        if min(powers.values()) < 0 or not has_sign(factor):
-            continue
-        lift = max([0, *(-e for mono in value.terms for n, e in mono if n == g)])
-        value, below = value * Value(field, {((g, lift),): 1}), _inverse(head)
-        for _ in range(MOST_STEPS):
-            high = {m: c for m, c in value.terms.items() if dict(m).get(g, 0) >= top}
-            if not high:
-                return value
-            value = value - Value(field, high) * below * d
-    return value
 
 
 def _solved(d: Value) -> dict[int, Value]:
