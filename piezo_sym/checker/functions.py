@@ -46,8 +46,6 @@ sinh | cosh(x)      | x | odd  | x >= 0: y >= x + x**3/6; x <= 0: y <= x + x**3/
 cosh | sinh(x)      | 1 | even | y >= 1 + x**2/2; y*(1 - x**2/2) <= 1
 atan | 1/(1 + x**2) | x | odd  | y < 1.5708; y > -1.5708; x >= 0: y <= x; x <= 0: y >= x;
     x >= 0: y*(1 + x) >= x; x <= 0: y*(1 - x) <= x
-asinh | 1/sqrt(1 + x**2) | x | odd | x >= 0: y <= x; x <= 0: y >= x;
-    x >= 0: y*(1 + x) >= x; x <= 0: y*(1 - x) <= x
 erf  | exp(-x**2)/sqrt(atan(1)) | x | odd | y < 1; y > -1; x >= 0: y <= 1.1284*x;
     x <= 0: y >= 1.1284*x; x >= 0: y*(1 + x) >= x; x <= 0: y*(1 - x) <= x
 """

@@ -146,23 +146,6 @@ SMOOTH = (
         example="F_c*atan(v/v_c)",
     ),
     LawFunction(
-        "asinh",
-        ("1/sqrt(1 + x**2)",),
-        parity="odd",
-        rises=1,
-        known=(0, 0),
-        facts=(  # for x >= 0 slopes order as 1/(1 + x)**2 <= 1/sqrt(1 + x**2) <= 1
-            "x < 0 | y <= x",
-            "x < 0 | y*(1 + x) >= x",
-            "x > 0 | y >= x",
-            "x > 0 | y*(1 - x) <= x",
-        ),
-        integral="x*y - sqrt(1 + x**2)",
-        numpy="np.arcsinh",
-        about="the inverse hyperbolic sine of x",
-        example="F_0*asinh(v/v_0)",
-    ),
-    LawFunction(
         "sinh",
         ("cosh(x)",),
         parity="odd",
