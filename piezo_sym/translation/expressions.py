@@ -144,6 +144,8 @@ class Expressions:
             with on_path(field, field.path and field.path * chosen):
                 parts.append(self.any(node))
         if parts[0][1] == parts[1][1] == WHOLE:
+            if parts[0] == parts[1]:
+                return parts[0]
             raise refused(then, "a choice of integers")
         (first, shape), (second, shape_of_other) = map(self._real, parts)
         return choose(test, first, second), joined(shape, shape_of_other, then)
