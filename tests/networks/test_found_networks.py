@@ -104,3 +104,55 @@ third = {{ kind = "resistor", between = ["m", "gnd"], voltage = "{law}", heats =
 """
     with pytest.raises(PiezoError, match="determine each other's flow"):
         derive(parse(JUMP + text))
+
+
+def test_a_current_that_is_zero_has_a_kink_of_its_voltage():
+    """The printed slope chooses between integers: minus the sign of 0, and 0."""
+    law = {"voltage": "R*deadzone(i, n*T/T_0)", "heats": "body"}
+    elements = {
+        "store": {**CAPACITOR, "between": ["a", "b"]},
+        "coil": {"kind": "inductor", "between": ["b", "a"], "inductance": "C"},
+        "wire": {"kind": "resistor", "between": ["a", "gnd"], **law},
+    }
+    assert check(spec(elements)) == DERIVED
+
+
+def test_a_kink_of_what_springs_without_a_sign_give():
+    """On the kink the two branches differ by a multiple of the difference that is zero there."""
+    elements = {
+        "one": {"kind": "spring", "between": ["m", "wall"], "force": "k*sinh(q)"},
+        "two": {"kind": "spring", "between": ["m", "tip"], "energy": "k*cosh(q)"},
+        "load": {"kind": "mass", "at": "tip", "mass": "n"},
+        "rub": {
+            "kind": "damper",
+            "between": ["wall", "m"],
+            "velocity": "(R*max(f, 0) + C*min(f, 0))*(1 + S_body**2)",
+            "heats": "body",
+        },
+    }
+    given = spec(elements)
+    given["parameters"]["k"] = {"value": 1.5, "unit": "N/m"}
+    given["domain"]["assume"] += ["C > 0"]
+    assert check(given) == DERIVED
+
+
+def test_signs_of_products_decide_between_the_branches_behind_a_gear():
+    elements = {
+        "gear": {
+            "kind": "gear",
+            "first": ["shaft", "rotor"],
+            "second": ["frame", "rotor"],
+            "ratio": "n",
+        },
+        "shaft": {"kind": "torsion_spring", "between": ["shaft", "frame"], "stiffness": "k"},
+        "rub": {
+            "kind": "rotational_damper",
+            "between": ["frame", "rotor"],
+            "angular_velocity": "R*deadzone(tau, C*T/T_0)",
+            "heats": "body",
+        },
+    }
+    given = spec(elements)
+    given["parameters"]["k"] = {"value": 1.5, "unit": "N*m/rad"}
+    given["domain"]["assume"] += ["C > 0", "n > 0"]
+    assert check(given) == DERIVED
