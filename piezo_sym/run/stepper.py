@@ -1,8 +1,9 @@
 """One step at a time, with inputs that the caller decides: closed loops, hardware in the loop.
 
-Input: a generated module, a step, parameters and initial values.  Output: a `Stepper`, whose
-`step(u)` takes one step of Gauss collocation in C and returns the outputs y.  What happens in each
-step costs no more than a call of C; the names, the ledger and errors are made when asked for.
+Input: a generated module, a step, parameters and initial values, and what lies between a plant and
+its controller.  Output: a `Stepper`, whose `step(u)` takes steps of Gauss collocation in C and
+returns the outputs y.  What happens in each step costs no more than a call of C; the names, the
+ledger and errors are made when asked for.
 """
 
 from __future__ import annotations
@@ -15,43 +16,17 @@ from typing import Any, NoReturn, final
 
 import numpy as np
 
-from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
-from piezo_sym.run.checks import FloatArray, number, positive, vector
-from piezo_sym.run.collocation import layout_of, read_order
-from piezo_sym.run.dataset import Known, Trajectory
-from piezo_sym.run.engine.batch import Batch, Stepping
+from piezo_sym.errors import PiezoError, UsageError, listing, quote
+from piezo_sym.run.checks import FloatArray, number, positive, vector, whole
+from piezo_sym.run.collocation import read_order
+from piezo_sym.run.engine.batch import Stepping
 from piezo_sym.run.engine.engine import engine_of
-from piezo_sym.run.engine.records import POINTER, at, c_record
-from piezo_sym.run.guard import check_start, domain_error, input_conditions
-from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.module import GeneratedModule, checked, row_names
-from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
-from piezo_sym.run.signals import Constant
+from piezo_sym.run.plant import Given, Plant, calls_of, read_held, read_plants, read_quanta
 from piezo_sym.run.system import DrivenModule
 
-
-@final
-class Limits:
-    """The conditions of the domain on inputs alone, which C looks at before each step."""
-
-    def __init__(self, system: DrivenModule) -> None:
-        conditions, _ = input_conditions(system)
-        domain = system.module.DOMAIN
-        self.conditions = np.array(conditions, dtype="l")
-        self.strict = np.array([domain[n].strict for n in conditions], dtype="l")
-        self.margins = np.zeros(len(domain))
-
-    def hold(self) -> bool:
-        """Return whether the last step's inputs lay in the domain; a margin of nan does not."""
-        found = self.margins[self.conditions]
-        return bool(np.all((found > 0) | ((found == 0) & (self.strict == 0))))
-
-
-def _refuse_signals(module: GeneratedModule, known: Inputs) -> None:
-    for record, signal in zip(module.INPUTS, known.signals, strict=True):
-        if not isinstance(signal, Constant):
-            where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
-            raise UsageError("this is no number", where, "the input at t = 0", remedy)
+#: Calls that inputs may be late.
+MOST_DELAY = 1_000_000
 
 
 @final
@@ -70,17 +45,34 @@ class Stepper:
     >>> print(f"q = {actuator.x[0] * 1e6:.2f} um at t = {actuator.time:.2f} s")
     q = 100.00 um at t = 1.00 s
 
+    Two of them with other dampers, sampled at 5 kHz, the voltage one sample late, q known to 10 nm:
+
+    >>> plants = [{"d": 300.0}, {"d": 500.0}]
+    >>> quantum = {"q": 1e-8}
+    >>> pair = Stepper("piezo_stack", step=h, parameters=plants, every=10, delay=1, quantum=quantum)
+    >>> integral = 0.0
+    >>> for _ in range(5000):
+    ...     error = target - pair.measured[0]
+    ...     integral += error * 10 * h
+    ...     y = pair.step([0.0, 2e4 * error + 4e7 * integral, 298.15])
+    >>> pair.x.shape, y.shape, (abs(pair.x[0] - target) < 2e-8).tolist()
+    ((6, 2), (3, 2), [True, True])
+
     Parameters
     ----------
     module : a generated module; `piezo_sym.Stepper` takes a model, a name or a path.
     step : length of a step [s]; the step is halved inside where it has to be.
     order : 2, 4, 6, 8 or 10: by which power of the step its error falls, where all is smooth.
-    parameters, initial, inputs : as for `simulate`; `inputs` are those at t = 0, numbers only.
+    parameters, initial, inputs : as for `simulate`; `inputs` are those at t = 0, numbers only. A
+        list of parameters makes as many plants: each array has one more axis for them, the last.
+    every : how many steps a call takes, its inputs held: the sample time is every*step.
+    delay : how many calls later inputs act; those at t = 0 act until then.
+    quantum : state, or output as `y_<port>` -> what its measurement is a multiple of, SI units.
 
     Attributes
     ----------
     states, inputs, outputs : the names of the entries of x, u and y, in order; lanes `phi_1`, ...
-    x : the state (n,), a copy, banks spread.
+    x : the state (n,), a copy, banks spread; `measured`: the same by quanta.
     time : the time [s] after the steps taken.
     ledger : what ports and processes did since t = 0, by the names of `simulate`'s Dataset.
 
@@ -96,65 +88,69 @@ class Stepper:
         *,
         step: float,
         order: int = 2,
-        parameters: Mapping[str, LaneValue] | None = None,
-        initial: Mapping[str, LaneValue] | None = None,
+        parameters: Given | Sequence[Given] | None = None,
+        initial: Given | None = None,
         inputs: Mapping[str, float] | None = None,
+        every: int = 1,
+        delay: int = 0,
+        quantum: Mapping[str, float] | None = None,
     ) -> None:
-        checked(module)
-        self._h = positive(step, "Stepper.step")
-        stages = read_order(order, "Stepper.order") // 2
-        engine = engine_of(module)
-        values = read_parameters(module, parameters)
-        known = read_inputs(module, inputs, self._h)
-        _refuse_signals(module, known)
-        system = self._system = DrivenModule(module, values, known)
-        x = read_initial(module, values, system.inputs.segments[0].at(0.0), initial)
-        check_start(system, x)
-        self.states = tuple(row_names(module.STATES, values))
+        self._name, self._h = checked(module).NAME, positive(step, "Stepper.step")
+        stages, engine = read_order(order, "Stepper.order") // 2, engine_of(module)
+        self._many = isinstance(parameters, Sequence)
+        values, known = read_plants(module, parameters), read_held(module, inputs, self._h)
+        self.states = tuple(row_names(module.STATES, values[0]))
         self.inputs = tuple(record.name for record in module.INPUTS)
         self.outputs = tuple(record.name for record in module.OUTPUTS)
-        self._start, self._taken = x, 0
+        self._u = np.tile(known.segments[0].at(0.0), (len(values), 1))
+        self._y = np.zeros((len(values), len(self.outputs)))
         stepping = Stepping(stages, 0.0, self._h, self._h, fixed=self._h)
-        layout = layout_of(1, x.size, side_by_side=False)
-        self._batch = Batch(engine, [values], x[None], system.inputs, np.empty(0), stepping, layout)
-        self._u, self._y = np.zeros(len(self.inputs)), np.zeros(len(self.outputs))
-        self._kept = np.zeros(2 * x.size + self._batch.ledgers.size)
-        self._put, self._buffer = struct.Struct(f"{self._u.size}d").pack_into, self._u.data
-        self._copied: Callable[[], FloatArray] = self._y.copy
-        self._limits = Limits(system)
-        functions = (ctypes.cast(engine.function(n), POINTER) for n in ("outputs", "margins"))
-        self._call = self._made(*functions)
-        self._at = ctypes.byref(self._call)
-        self._once: Any = self._batch.function("step_once")
-        self._forget: Any = self._batch.function("forget")
-        self._forget(self._at)
+        self._plants = [
+            Plant(DrivenModule(module, one, known), engine, initial, stepping, u, y)
+            for one, u, y in zip(values, self._u, self._y, strict=True)
+        ]
+        self._calls = calls_of(self._plants, whole(every, "Stepper.every", 1))
+        self._at = ctypes.byref(self._calls)
+        self._once, self._forget = map(self._plants[0].function, ("step_once", "forget"))
+        self._x_quanta, self._y_quanta = read_quanta(quantum, self.states, self.outputs)
+        kept = whole(delay, "Stepper.delay", 0, MOST_DELAY) + 1
+        self._first, self._late = self._u.copy(), np.zeros((kept, *self._u.shape))
+        self._direct = not (self._many or delay)
+        self._put, self._buffer = struct.Struct(f"{len(self.inputs)}d").pack_into, self._u.data
+        direct = self._direct and self._y_quanta is None
+        self._read: Callable[[], FloatArray] = self._y[0].copy if direct else self._outputs
         lock = threading.Lock()
         self._begin, self._end = lock.acquire, lock.release
+        self.reset()
 
     def __repr__(self) -> str:
         """Return the model, the step and the time."""
-        return f"<Stepper of {self._system.module.NAME}: step {self._h:g} s, time {self.time:g} s>"
+        return f"<Stepper of {self._name}: step {self._h:g} s, time {self.time:g} s>"
 
-    def _made(self, outputs: Any, margins: Any) -> Any:
-        """Return what a call needs, all in one place; functions are those of ``<model>.c``."""
-        batch, limits = self._batch, self._limits
-        return c_record("stepper")(
-            *(batch.address, batch.run, batch.inputs.segments[0].signals),
-            *(at(self._u), at(self._y), outputs, margins),
-            *(at(self._kept), at(limits.margins), at(limits.conditions), at(limits.strict)),
-            limits.conditions.size,
-        )
+    def _shown(self, rows: FloatArray, quanta: FloatArray | None = None) -> FloatArray:
+        """Return rows of numbers, one per plant, as a caller sees them, rounded to quanta."""
+        if quanta is not None:
+            size = np.where(quanta > 0, quanta, 1.0)
+            rows = np.where(quanta > 0, np.round(rows / size) * size, rows)
+        return rows.T.copy() if self._many else rows[0].copy()
+
+    def _outputs(self) -> FloatArray:
+        return self._shown(self._y, self._y_quanta)
 
     @property
     def x(self) -> FloatArray:
-        """The state, shape (n,)."""
-        x: FloatArray = self._batch.x[0].copy()
-        return x
+        """The state, shape (n,); of several plants (n, plants)."""
+        return self._shown(np.array([plant.x for plant in self._plants]))
+
+    @property
+    def measured(self) -> FloatArray:
+        """The state as it is measured, shaped as x: in multiples of quanta, where there are any."""
+        return self._shown(np.array([plant.x for plant in self._plants]), self._x_quanta)
 
     @property
     def time(self) -> float:
         """The time [s]."""
-        return self._taken * self._h
+        return self._taken * int(self._calls[0].steps) * self._h
 
     @property
     def ledger(self) -> dict[str, Any]:
@@ -162,46 +158,60 @@ class Stepper:
 
         `supplied_<port>`, `heat_<element>` [J], `produced_<element>` [J/K],
         `entropy_exchanged_<port>` [J/K]; `energy_residual` [J] and `entropy_residual` [J/K] are
-        what is left over of the two balances: round-off.
+        what is left over of the two balances: round-off. Of several plants, a last axis for them.
         """
-        x, u = self._batch.x[0][:, None], self._u[:, None]
-        sums = self._batch.ledgers[0, 0][:, None]
-        past = Trajectory(self._start, x, u, sums, self._taken, 0)
-        rows = {name: values[0] for name, (_, values, _) in Known.of(self._system, past).ledger()}
-        return {name: row.copy() if row.ndim else float(row) for name, row in rows.items()}
+        each = [plant.ledger(self._taken) for plant in self._plants]
+        if self._many:
+            return {name: np.stack([one[name] for one in each], axis=-1) for name in each[0]}
+        return {name: row if row.ndim else float(row) for name, row in each[0].items()}
 
-    def step(self, u: Sequence[float] | FloatArray) -> FloatArray:
-        """Take one step with the inputs u held, and return the outputs y after it.
+    def step(self, u: Sequence[float | FloatArray] | FloatArray) -> FloatArray:
+        """Take one step, or `every` of them, with the inputs u held, and return the outputs after.
 
         Parameters
         ----------
-        u : one number per input, in the order of `inputs`, SI units.
+        u : one number per input, in the order of `inputs`, SI units; with several plants, each a
+            number for all or an array (plants,).
 
         Returns
         -------
         numpy.ndarray
-            y (ports,), in the order of `outputs`, SI units; an array of the caller's own.
+            y (ports,), of several plants (ports, plants), in the order of `outputs`, SI units; an
+            array of the caller's own.
 
         Raises
         ------
         UsageError : there are more or fewer numbers than inputs, one is not finite, or another
             thread is stepping it.
-        RunError : inputs leave the domain, or no step stays in it. State, time and ledger are those
-            before the step.
+        RunError : inputs leave the domain, or no step stays in it. State, time, ledger and inputs
+            on their way are those before the call, of all plants.
         """
         if not self._begin(False):  # not to wait
             what = "another thread is stepping this Stepper"
             raise UsageError(what, "Stepper.step", remedy="give each thread a Stepper of its own")
         try:
-            self._put(self._buffer, 0, *u)
-            if not self._once(self._at):
-                raise self._refusal(u)
+            if self._direct:
+                self._put(self._buffer, 0, *u)
+            else:
+                self._queue(u)
+            if failed := self._once(self._at):
+                raise self._refusal(u, failed - 1)
             self._taken += 1
-            return self._copied()
+            return self._read()
         except (ValueError, TypeError, OverflowError, struct.error) as error:
             raise self._no_inputs(u) from error
         finally:
             self._end()
+
+    def _queue(self, u: Sequence[float | FloatArray] | FloatArray) -> None:
+        """Let inputs wait for the call in which they act; those of this one act now."""
+        size = len(self._late)
+        wanted = self._late[(self._taken + size - 1) % size]  # written again if this call fails
+        for row, value in zip(wanted.T, u, strict=True):
+            row[:] = value
+        if size > 1 and not np.all(np.isfinite(wanted)):  # C looks at those that act
+            raise ValueError
+        self._u[:] = self._late[self._taken % size]
 
     def __reduce__(self) -> NoReturn:
         """Refuse to be pickled or copied: its state lies in C."""
@@ -210,11 +220,12 @@ class Stepper:
         raise UsageError(what, "Stepper", remedy=remedy)
 
     def reset(self, x: Sequence[float] | FloatArray | None = None) -> None:
-        """Go back to t = 0, with an empty ledger.
+        """Go back to t = 0, with an empty ledger, and no inputs on their way.
 
         Parameters
         ----------
-        x : the state to start from (n,), in the order of `states`; the last one when left out.
+        x : the state to start from (n,), in the order of `states`, of several plants also an array
+            (n, plants); the last one when left out.
 
         Raises
         ------
@@ -222,29 +233,44 @@ class Stepper:
         RunError : it is outside the domain.
         """
         if x is not None:
-            start = vector(x, "Stepper.reset")
+            for plant, start in zip(self._plants, self._starts(x), strict=True):
+                plant.start = start
+        for n, plant in enumerate(self._plants):
+            plant.reset()
+            self._forget(ctypes.byref(self._calls[n]))
+        self._late[:] = self._first
+        self._taken = 0
+
+    def _starts(self, x: Sequence[float] | FloatArray) -> list[FloatArray]:
+        """Return the states of all plants to start from; raise `UsageError` if one is none."""
+        each = isinstance(x, np.ndarray) and x.shape == (len(self.states), len(self._plants))
+        given = list(np.transpose(x)) if self._many and each else [x] * len(self._plants)
+        starts = [vector(one, "Stepper.reset") for one in given]
+        for plant, start in zip(self._plants, starts, strict=True):
             if start.size != len(self.states):
                 expected = f"one number each for {listing(self.states)}"
                 raise UsageError(f"{start.size} numbers are no state", "Stepper.reset", expected)
-            check_start(self._system, start)
-            self._start = start
-        self._batch.x[0] = self._start
-        self._batch.largest[0] = np.abs(self._start)
-        self._batch.ledgers[:] = 0.0
-        self._forget(self._at)
-        self._taken = 0
+            plant.check(start)
+        return starts
 
     def _no_inputs(self, u: object) -> UsageError:
         if isinstance(u, Sequence) and not isinstance(u, str) and len(u) == len(self.inputs):
-            for name, value in zip(self.inputs, u, strict=True):
-                number(value, f"Stepper.step: input {quote(name)}")
+            self._check(u)
         expected = f"one number each for {', '.join(self.inputs)}"
+        if self._many:
+            expected += f", or {len(self._plants)} numbers, one per plant"
         return UsageError("these are no inputs", "Stepper.step", expected)
 
-    def _refusal(self, u: Sequence[float] | FloatArray) -> PiezoError:
+    def _check(self, u: Sequence[float | FloatArray] | FloatArray) -> None:
+        """Raise `UsageError` for the first input that is no finite number."""
         for name, value in zip(self.inputs, u, strict=True):
-            number(value, f"Stepper.step: input {quote(name)}")
-        if not self._limits.hold():
-            return domain_error(self._system, self.time, self._batch.x[0], self._u)
-        what = f"no step stays in the domain at t = {self.time:.6g} s"
-        return RunError(what, "Stepper.step", remedy="look at the inputs, or take shorter steps")
+            for one in np.ravel(value).tolist() if self._many else [value]:
+                number(one, f"Stepper.step: input {quote(name)}")
+
+    def _refusal(self, u: Sequence[float | FloatArray] | FloatArray, failed: int) -> PiezoError:
+        """Return why a plant took no step."""
+        self._check(u)
+        error = self._plants[failed].refusal(self.time)
+        if self._many:
+            error.where += f", plant {failed + 1} of {len(self._plants)}"
+        return error

@@ -1,6 +1,6 @@
-/* One step at a time, for closed loops: a batch of one run.  Comes after batch.c. */
+/* Some steps at a call, for closed loops: plants, each a batch of one run.  Comes after batch.c. */
 
-/* All that a call needs, in one place; the caller decides the inputs. */
+/* All that a call needs for one plant, in one place; the caller decides the inputs. */
 typedef struct {
     MODEL(batch) *batch;
     MODEL(run) *run;
@@ -10,10 +10,11 @@ typedef struct {
     /* functions of <model>.c, whose numbers are those of one run */
     void (*outputs)(const double *, const double *, const MODEL(parameters) *, double *);
     void (*margins)(const double *, const double *, const MODEL(parameters) *, double *);
-    double *kept; /* n, n, 2 booked: state, largest magnitudes and ledger before a step */
+    double *kept; /* n, n, 2 booked: state, largest magnitudes and ledger before a call */
     double *margin;                  /* of each condition of the domain */
     const long *conditions, *strict; /* those on inputs alone, and whether equality is outside */
     long limits;
+    long steps, plants; /* at a call, and stepped at it: this one, and those behind it */
 } MODEL(stepper);
 
 /* Whether the inputs lie in the domain; steps look at the conditions on states. */
@@ -38,34 +39,58 @@ void MODEL(forget)(MODEL(stepper) *t)
     MODEL(load)(t->batch, 0, t->run);
 }
 
-/* Take a step with the inputs u and write the outputs; returns 0, and restores all, if there is none. */
-int MODEL(step_once)(MODEL(stepper) *t);
-int MODEL(step_once)(MODEL(stepper) *t)
+static void MODEL(keep_state)(const MODEL(stepper) *t)
+{
+    const size_t n = (size_t)t->batch->m.n, booked = 2 * (size_t)t->batch->m.booked;
+    memcpy(t->kept, t->run->x, n * sizeof(double));
+    memcpy(t->kept + n, t->run->largest, n * sizeof(double));
+    memcpy(t->kept + 2 * n, t->run->ledger, booked * sizeof(double));
+}
+
+static void MODEL(restore_state)(MODEL(stepper) *t)
+{
+    const size_t n = (size_t)t->batch->m.n, booked = 2 * (size_t)t->batch->m.booked;
+    memcpy(t->run->x, t->kept, n * sizeof(double));
+    memcpy(t->run->largest, t->kept + n, n * sizeof(double));
+    memcpy(t->run->ledger, t->kept + 2 * n, booked * sizeof(double));
+    MODEL(forget)(t);
+}
+
+/* Take the steps of one call with the inputs u, and write the outputs; returns whether there are all. */
+static int MODEL(steps_on)(MODEL(stepper) *t)
 {
     MODEL(batch) *b = t->batch;
     MODEL(lane) *l = b->lane;
-    MODEL(run) *run = t->run;
-    const size_t n = (size_t)b->m.n, booked = 2 * (size_t)b->m.booked;
-    if (!MODEL(inputs_inside)(t))
-        return 0;
-    if (l->phase == IDLE) { /* the last step succeeded: its rates predict this one */
-        l->phase = STEP;
-        l->t = run->t = 0.0;
-    }
-    memcpy(t->kept, run->x, n * sizeof(double));
-    memcpy(t->kept + n, run->largest, n * sizeof(double));
-    memcpy(t->kept + 2 * n, run->ledger, booked * sizeof(double));
     for (long k = 0; k < b->m.inputs; ++k)
         t->signals[k].offset = t->u[k];
-    while (MODEL(go)(b, 1))
-        ;
-    if (run->failed) {
-        memcpy(run->x, t->kept, n * sizeof(double));
-        memcpy(run->largest, t->kept + n, n * sizeof(double));
-        memcpy(run->ledger, t->kept + 2 * n, booked * sizeof(double));
-        MODEL(forget)(t);
-        return 0;
+    for (long step = 0; step < t->steps; ++step) {
+        if (l->phase == IDLE) { /* the last step succeeded: its rates predict this one */
+            l->phase = STEP;
+            l->t = t->run->t = 0.0;
+        }
+        while (MODEL(go)(b, 1))
+            ;
+        if (t->run->failed)
+            return 0;
     }
-    t->outputs(run->x, t->u, run->p, t->y);
+    t->outputs(t->run->x, t->u, t->run->p, t->y);
     return 1;
+}
+
+/* Step all plants; returns 0, or which of them, from 1, has no step, and then restores all. */
+long MODEL(step_once)(MODEL(stepper) *all);
+long MODEL(step_once)(MODEL(stepper) *all)
+{
+    for (long k = 0; k < all->plants; ++k)
+        if (!MODEL(inputs_inside)(all + k))
+            return k + 1;
+    for (long k = 0; k < all->plants; ++k)
+        MODEL(keep_state)(all + k);
+    for (long k = 0; k < all->plants; ++k)
+        if (!MODEL(steps_on)(all + k)) {
+            for (long back = 0; back <= k; ++back)
+                MODEL(restore_state)(all + back);
+            return k + 1;
+        }
+    return 0;
 }

@@ -1,0 +1,147 @@
+"""What a Stepper steps: plants, each one model with its parameters and its record in C.
+
+Input: what a user gave for parameters, inputs and quanta; a driven module, its engine, its state at
+t = 0, and how it steps.  Output: these checked; `Plant`, which owns the arrays that C works on.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias, final
+
+import numpy as np
+
+from piezo_sym.errors import PiezoError, RunError, UsageError
+from piezo_sym.run.checks import FloatArray, known_keys, positive
+from piezo_sym.run.collocation import layout_of
+from piezo_sym.run.dataset import Known, Trajectory
+from piezo_sym.run.engine.batch import Batch, Stepping
+from piezo_sym.run.engine.engine import Engine
+from piezo_sym.run.engine.records import POINTER, at, c_record
+from piezo_sym.run.guard import check_start, domain_error, input_conditions
+from piezo_sym.run.inputs import Inputs, read_inputs
+from piezo_sym.run.module import GeneratedModule, lanes
+from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
+from piezo_sym.run.signals import Constant
+from piezo_sym.run.system import DrivenModule
+
+Given: TypeAlias = Mapping[str, LaneValue]
+
+
+def read_plants(module: GeneratedModule, given: Given | Sequence[Given] | None) -> list[Any]:
+    """Return the parameters of each plant; raise `UsageError` if their states differ in number."""
+    each = given if isinstance(given, Sequence) else [given]
+    found = [read_parameters(module, one) for one in each]
+    if len({tuple(lanes(one, bank) for bank in module.BANKS) for one in found}) == 1:
+        return found
+    what = "banks differ in size" if found else "there is no plant"
+    expected = "one mapping per plant, equal in the sizes of banks"
+    raise UsageError(what, "Stepper.parameters", expected)
+
+
+def read_held(module: GeneratedModule, given: Mapping[str, float] | None, step: float) -> Inputs:
+    """Return the inputs at t = 0; raise `UsageError` if one is more than a number."""
+    known = read_inputs(module, given, step)
+    for record, signal in zip(module.INPUTS, known.signals, strict=True):
+        if not isinstance(signal, Constant):
+            where, remedy = f"Stepper.inputs.{record.name}", "give the others to step(u)"
+            raise UsageError("this is no number", where, "the input at t = 0", remedy)
+    return known
+
+
+def read_quanta(
+    given: Mapping[str, float] | None, states: tuple[str, ...], outputs: tuple[str, ...]
+) -> tuple[FloatArray | None, FloatArray | None]:
+    """Return the quanta of x (n,) and y (ports,), 0 where there is none; None without any."""
+    where, ports = "Stepper.quantum", tuple(f"y_{name}" for name in outputs)
+    known = known_keys(given, (*states, *ports), where)
+    sizes = {name: positive(value, f"{where}.{name}") for name, value in known.items()}
+    x, y = (np.array([sizes.get(name, 0.0) for name in names]) for names in (states, ports))
+    return x if np.any(x) else None, y if np.any(y) else None
+
+
+@final
+class Plant:
+    """One model that goes step by step: the inputs u (m,) are held in each.
+
+    Attributes
+    ----------
+    start : the state (n,) at t = 0.
+    u, y : what C reads, (m,), and writes, (ports,).
+    """
+
+    def __init__(
+        self,
+        system: DrivenModule,
+        engine: Engine,
+        initial: Given | None,
+        stepping: Stepping,
+        u: FloatArray,
+        y: FloatArray,
+    ) -> None:
+        x = read_initial(system.module, system.parameters, u, initial)
+        check_start(system, x)
+        self._system, self.start = system, x
+        self.u, self.y = u, y
+        layout = layout_of(1, x.size, side_by_side=False)
+        given = engine, [system.parameters], x[None], system.inputs, np.empty(0)
+        self._batch = Batch(*given, stepping, layout)
+        self._kept = np.zeros(2 * x.size + self._batch.ledgers.size)
+        domain, (conditions, _) = system.module.DOMAIN, input_conditions(system)
+        self._conditions = np.array(conditions, dtype="l")
+        self._strict = np.array([domain[n].strict for n in conditions], dtype="l")
+        self._margins = np.zeros(len(domain))
+        named = ("outputs", "margins")
+        self._functions = [ctypes.cast(engine.function(name), POINTER) for name in named]
+
+    def record(self, steps: int, plants: int) -> Any:
+        """Return MODEL(stepper), the first of some plants, with so many steps at a call."""
+        batch = self._batch
+        return c_record("stepper")(
+            *(batch.address, batch.run, batch.inputs.segments[0].signals),
+            *(at(self.u), at(self.y), *self._functions),
+            *(at(self._kept), at(self._margins), at(self._conditions), at(self._strict)),
+            *(self._conditions.size, steps, plants),
+        )
+
+    def function(self, word: str) -> Any:
+        """Return one of the functions of C by its own name."""
+        return self._batch.function(word)
+
+    @property
+    def x(self) -> FloatArray:
+        """The state (n,), a copy."""
+        x: FloatArray = self._batch.x[0].copy()
+        return x
+
+    def check(self, x: FloatArray) -> None:
+        """Raise `RunError` if this is no state to start from."""
+        check_start(self._system, x)
+
+    def reset(self) -> None:
+        """Go back to the start, with an empty ledger; C has to forget the last step."""
+        self._batch.x[0] = self.start
+        self._batch.largest[0] = np.abs(self.start)
+        self._batch.ledgers[:] = 0.0
+
+    def ledger(self, taken: int) -> dict[str, FloatArray]:
+        """Return what is booked so far, by the names of `simulate`."""
+        x, u = self._batch.x[0][:, None], self.u[:, None]
+        sums = self._batch.ledgers[0, 0][:, None]
+        past = Trajectory(self.start, x, u, sums, taken, 0)
+        found = Known.of(self._system, past).ledger()
+        return {name: values[0].copy() for name, (_, values, _) in found}
+
+    def refusal(self, t: float) -> PiezoError:
+        """Return why C took no step at t [s]: the last inputs, or the state."""
+        margins = self._margins[self._conditions]
+        if not np.all((margins > 0) | ((margins == 0) & (self._strict == 0))):  # nan lies outside
+            return domain_error(self._system, t, self._batch.x[0], self.u)
+        what = f"no step stays in the domain at t = {t:.6g} s"
+        return RunError(what, "Stepper.step", remedy="look at the inputs, or take shorter steps")
+
+
+def calls_of(plants: Sequence[Plant], steps: int) -> Any:
+    """Return MODEL(stepper) of each plant, one behind the other; so many steps at a call."""
+    return (c_record("stepper") * len(plants))(*(one.record(steps, len(plants)) for one in plants))
