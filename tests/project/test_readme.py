@@ -4,6 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from piezo_sym.spec.elements import KINDS
@@ -71,6 +72,7 @@ def test_the_python_works(folder, monkeypatch):
     exec(compile(test, "README.md", "exec"), names)
     names["test_my_actuator_obeys_both_laws"]()
     assert names["run"].sizes["time"] == 1001
+    assert np.abs(names["path"][-1] - 1e-4).max() < 1e-8  # both actuators are where they shall be
     assert folder.exists()
 
 
