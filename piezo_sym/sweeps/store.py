@@ -1,9 +1,9 @@
 """A Zarr store of a sweep: written box by box, so that an interrupted sweep can continue.
 
 Input: a path, a `Plan`, its frame.  Output: a `Store`.  The part of `error` of a box is written
-last; until then it says "not run".  A store has the fingerprint of its sweep, SHA-256: equal for
-two sweeps exactly if they request the same runs.  A function contributes its name, its code and all
-values that it refers to, so that an edited one changes it.
+last; until then it says "not run".  A store has the fingerprint of its sweep, SHA-256 of each of
+its parts: equal for two sweeps exactly if they request the same runs.  A function contributes its
+name, its code and all values that it refers to, so that an edited one changes it.
 """
 
 from __future__ import annotations
@@ -21,25 +21,39 @@ from typing import Any, final
 import numpy as np
 import xarray
 
-from piezo_sym.errors import FileError
+from piezo_sym.errors import FileError, listing
 from piezo_sym.files import path_text, zarr_library
 from piezo_sym.run.streaming import held_back
 from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN, Results, Shape
 from piezo_sym.sweeps.plan import Plan, Region
 from piezo_sym.sweeps.run import Result
 
-#: Fields that say how runs are divided and executed, not which runs they are.
+#: Fields that say how runs are divided and executed, not which runs they are; and what users call
+#: some of the others.
 LEFT_OUT = ("most", "together", "engine", "side_by_side")
+CALLED = {"axes": "over", "signals": "inputs", "samples": "times", "each": "reduce_by"}
 
 
 def fingerprint(plan: Plan, spec_sha256: str) -> str:
-    """Return the fingerprint of a sweep."""
-    found = hashlib.sha256(spec_sha256.encode())
+    """Return the fingerprint of a sweep: the digest of each part by its name, as JSON."""
+    found = {"spec": spec_sha256}
     for field in fields(plan):
         if field.name not in LEFT_OUT:
+            digest = hashlib.sha256()
             for part in parts(getattr(plan, field.name)):
-                found.update(len(part).to_bytes(8, "little") + part)
-    return found.hexdigest()
+                digest.update(len(part).to_bytes(8, "little") + part)
+            found[CALLED.get(field.name, field.name)] = digest.hexdigest()
+    return json.dumps(found)
+
+
+def difference(mark: str, stored: str) -> str:
+    """Return in which parts two sweeps differ, by their fingerprints."""
+    try:
+        ours, theirs = json.loads(mark), dict(json.loads(stored))
+    except ValueError:  # of another version
+        return "holds another sweep"
+    names = [name for name, digest in ours.items() if theirs.get(name) != digest]
+    return f"holds another sweep, which differs in {listing(names)}"
 
 
 def parts(value: object, met: dict[int, object] | None = None) -> Iterator[bytes]:
@@ -109,8 +123,8 @@ def store_at(path: Path, plan: Plan, frame: xarray.Dataset, spec_sha256: str) ->
     if MARK not in group.attrs:
         raise FileError("is no store of a sweep", path_text(path), remedy=FRESH)
     if group.attrs[MARK] != mark:
-        expected = "a store of this very sweep"
-        raise FileError("holds another sweep", path_text(path), expected, FRESH)
+        what, expected = difference(mark, str(group.attrs[MARK])), "a store of this very sweep"
+        raise FileError(what, path_text(path), expected, FRESH)
     plan = replace(plan, most=int(str(group.attrs[BOX])))
     return plan, Store(path, group, plan)
 

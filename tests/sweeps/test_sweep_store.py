@@ -117,24 +117,24 @@ def test_what_is_done_does_not_depend_on_who_does_it(tmp_path, monkeypatch):
 
 
 OTHERS = [
-    {"duration": 2e-3},
-    {"times": 4},
-    {"rtol": 1e-6},
-    {"step": 1e-5},
-    {"parameters": {"d": 401}},
-    {"initial": {"q": 1e-6}},
-    {"inputs": {"F_ext": step(1e-4, 0, 1)}},
-    {"inputs": {"F_ext": lambda t: 2 * t}},
-    {"over": {"L": OVER["L"]}},
-    {"over": {**OVER, "L": OVER["L"] + 1e-9}},
-    {"reduce": "last"},
-    {"reduce": lambda run: run.q[0]},
-    {"method": "LSODA"},
+    ({"duration": 2e-3}, "duration, times"),
+    ({"times": 4}, "times"),
+    ({"rtol": 1e-6}, "rtol"),
+    ({"step": 1e-5}, "step"),
+    ({"parameters": {"d": 401}}, "parameters"),
+    ({"initial": {"q": 1e-6}}, "initial"),
+    ({"inputs": {"F_ext": step(1e-4, 0, 1)}}, "inputs"),
+    ({"inputs": {"F_ext": lambda t: 2 * t}}, "inputs"),
+    ({"over": {"L": OVER["L"]}}, "over"),
+    ({"over": {**OVER, "L": OVER["L"] + 1e-9}}, "over, parameters"),  # of a bank
+    ({"reduce": "last"}, "reduce"),
+    ({"reduce": lambda run: run.q[0]}, "reduce"),
+    ({"method": "LSODA"}, "method"),
 ]
 
 
-@pytest.mark.parametrize("change", OTHERS, ids=[next(iter(one)) for one in OTHERS])
-def test_the_store_of_another_sweep_is_refused_in_one_line(tmp_path, change):
+@pytest.mark.parametrize(("change", "told"), OTHERS, ids=[next(iter(one)) for one, _ in OTHERS])
+def test_the_store_of_another_sweep_is_refused_in_one_line(tmp_path, change, told):
     path = tmp_path / "runs.zarr"
     with pytest.raises(Interrupted):
         sweep("piezo_stack", **BASE, store=path, progress=stop_at(0))
@@ -142,7 +142,7 @@ def test_the_store_of_another_sweep_is_refused_in_one_line(tmp_path, change):
         sweep("piezo_stack", **{**BASE, **change}, store=path)
     said = str(raised.value)
     rest = "; expected a store of this very sweep; choose another path, or delete it"
-    assert said.endswith(f"runs.zarr': holds another sweep{rest}")
+    assert said.endswith(f"runs.zarr': holds another sweep, which differs in {told}{rest}")
     assert "\n" not in said
 
 
