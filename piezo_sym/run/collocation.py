@@ -22,7 +22,7 @@ from piezo_sym.run.engine.batch import Batch, Stepping, collocation_library
 from piezo_sym.run.engine.engine import Engine, engine_of
 from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.inputs import Inputs, Segment
-from piezo_sym.run.module import GeneratedModule, row_count
+from piezo_sym.run.module import UNPROVED, GeneratedModule, row_count, verdict_of
 from piezo_sym.run.system import DrivenModule
 
 METHOD = "discrete_gradient"
@@ -171,6 +171,9 @@ def _stuck(system: DrivenModule, t: float, x: FloatArray) -> RunError:
     """Return the error of a run that cannot go on: it says when and where."""
     why = "no step stays in the domain, or a law that jumps holds the state there"
     remedy = "look at inputs and state; allow more room in [domain]; tanh(v/w) for sign(v)"
+    if verdict_of(system.module).startswith(UNPROVED):
+        why = f"each step leaves the domain or consumes entropy, and the model is {UNPROVED}"
+        remedy = "mend what `piezo-sym verify` refutes; or take method LSODA, which goes on"
     names = [record.name for record in system.module.STATES]
     rows = system.rows(system.module.STATES)
     values = ", ".join(f"{n} = {x[row.start]:.6g}" for n, row in zip(names, rows, strict=True))

@@ -18,7 +18,7 @@ from piezo_sym import (
     sweep,
 )
 from piezo_sym.cli import run
-from piezo_sym.errors import ProofError, SpecError, UsageError
+from piezo_sym.errors import ProofError, RunError, SpecError, UsageError
 from piezo_sym.modules import ModuleWarning, module_of
 from piezo_sym.run.engine.engine import engine_of
 
@@ -129,6 +129,18 @@ def test_what_is_generated_all_the_same_runs_and_says_so(unproved):
         with pytest.warns(ModuleWarning, match=r"model 'mine' is NOT PROVED \(passive REFUTED"):
             result = simulate(unproved, duration=1e-4, times=2)
     assert result.attrs["proofs"].startswith("NOT PROVED (passive REFUTED")
+
+
+def test_what_consumes_entropy_is_run_by_scipy_alone(unproved):
+    generate(load(unproved), allow_unproved=True)
+    run = {"parameters": {"d": -1.0}, "inputs": {"V_in": 1.0}, "duration": 1e-4, "times": 2}
+    with pytest.warns(ModuleWarning), pytest.raises(RunError) as stopped:
+        simulate(unproved, **run)
+    said = str(stopped.value)
+    assert "each step leaves the domain or consumes entropy, and the model is NOT PROVED" in said
+    assert "or take method LSODA, which goes on" in said
+    with pytest.warns(ModuleWarning):
+        assert simulate(unproved, **run, method="LSODA").heat_damper[-1] < 0
 
 
 def test_the_command_says_that_a_run_is_not_proved(unproved, capsys):
