@@ -36,6 +36,7 @@ if TYPE_CHECKING:  # "as" makes them public for type checkers
     from piezo_sym.run import samples as samples
     from piezo_sym.run import samples_from_csv as samples_from_csv
     from piezo_sym.run import sine as sine
+    from piezo_sym.run import square as square
     from piezo_sym.run import step as step
     from piezo_sym.run import triangle as triangle
     from piezo_sym.spec.layered import layered as layered
@@ -53,7 +54,7 @@ _NAMES: dict[str, tuple[str, ...]] = {
     "derivation": ("derive",),
     "errors": ("PiezoError",),
     "linearization": ("linearize",),
-    "run": ("chirp", "ramp", "samples", "samples_from_csv", "sine", "step", "triangle"),
+    "run": ("chirp", "ramp", "samples", "samples_from_csv", "sine", "square", "step", "triangle"),
     "spec.layered": ("layered",),
     "spec.load": ("load",),
     "spec.model": ("Model",),

@@ -77,10 +77,11 @@ def simulate(
 ) -> None:
     """Simulate a spec's generated module and print its last values.
 
-    Signals: sine(amplitude, frequency), step(time, before, after), ramp(start, stop, before,
-    after), triangle(amplitude, frequency), chirp(amplitude, f_start, f_stop, duration); or @FILE,
-    a table, times in its first column, joined by straight lines, whose header may say units:
-    t [ms],V_in [kV]. Of several columns the one named like the input counts.
+    Signals: sine(amplitude, frequency, offset=0, phase=0), square(amplitude, frequency, offset=0),
+    triangle(amplitude, frequency, offset=0), chirp(amplitude, f_start, f_stop, duration,
+    offset=0), step(time, before, after), ramp(start, stop, before, after); or @FILE, a table,
+    times in its first column, joined by straight lines, whose header may say units: t [ms],V_in
+    [kV]. Of several columns the one named like the input counts.
     """
     _check_ending(out, events)
     signals = dict(pairs(inputs or (), "--input", signal))

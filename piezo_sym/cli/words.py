@@ -31,7 +31,7 @@ def pairs(
 
 
 def signal(text: str, where: str) -> Any:
-    """Return a number, a signal such as ``sine(100, 100)``, or samples from ``@drive.csv``.
+    """Return a number, a signal such as ``sine(100, 100, offset=50)``, or samples, ``@drive.csv``.
 
     Nothing is evaluated.
     """
@@ -45,15 +45,28 @@ def signal(text: str, where: str) -> Any:
     if call["name"] not in SIGNALS:
         what = f"{quote(call['name'])} is no signal"
         raise UsageError(what, where, remedy=nearest(call["name"], SIGNALS))
-    given = [_number(part, where) for part in call["numbers"].split(",")]
+    words = [part.rpartition("=") for part in call["numbers"].split(",")]
+    given = [_number(value, where) for _, equals, value in words if not equals]
+    named = {word.strip(): _number(value, where) for word, equals, value in words if equals}
     try:
-        return SIGNALS[call["name"]](*given)
+        return SIGNALS[call["name"]](*given, **named)
     except TypeError as error:
-        what = f"{call['name']} does not take {len(given)} numbers"
-        raise UsageError(what, where, remedy="see `piezo-sym simulate --help`") from error
+        what = f"{call['name']} does not take {quote(call['numbers'])}"
+        raise UsageError(what, where, spelled(call["name"])) from error
     except UsageError as error:
         error.where = f"{where}: {error.where}"
         raise
+
+
+def spelled(name: str) -> str:
+    """Return a signal as it is written: sine(amplitude, frequency, offset=0, phase=0)."""
+    from inspect import signature
+
+    from piezo_sym.run.signals import SIGNALS
+
+    taken = signature(SIGNALS[name]).parameters.values()
+    words = (p.name if p.default is p.empty else f"{p.name}={p.default:g}" for p in taken)
+    return f"{name}({', '.join(words)})"
 
 
 def from_file(path: str, where: str) -> Any:

@@ -15,9 +15,11 @@ from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, number, positive
 
 #: What makes signals: `piezo_sym.run` and the command line offer all of them.
-__all__ = ["chirp", "ramp", "sine", "step", "triangle"]
+__all__ = ["chirp", "ramp", "sine", "square", "step", "triangle"]
 
 MOST_CORNERS = 1000
+#: Each jump begins a segment of its own.
+MOST_JUMPS = 100_000
 STEPS_PER_PERIOD = 8
 
 
@@ -207,6 +209,40 @@ class Triangle(Signal):
 
 @final
 @dataclass(frozen=True)
+class Square(Signal):
+    """A square wave: offset + amplitude in the first half of each period, then offset - amplitude.
+
+    Parameters
+    ----------
+    amplitude, offset : in the input's unit.
+    frequency : in Hz, above 0.
+
+    Raises
+    ------
+    UsageError : a number is not finite, the frequency not positive, or it jumps too often in a run.
+    """
+
+    amplitude: float
+    frequency: float
+    offset: float = 0.0
+    _above_zero = ("frequency",)
+
+    def _values(self, t: FloatArray | float) -> FloatArray:
+        jumps = 2 * self.frequency
+        last = np.round(jumps * np.asarray(t))
+        last = np.where(t < last / jumps, last - 1, last)  # exact at each jump and beside it
+        return np.asarray(self.offset + self.amplitude * (1 - 2 * (last % 2)))
+
+    def _corners(self, duration: float) -> Iterable[float]:
+        jumps = 2 * self.frequency
+        if jumps * duration > MOST_JUMPS:
+            what, expected = f"over {MOST_JUMPS:,} jumps until {duration:g} s", "fewer in a run"
+            raise UsageError(what, "square.frequency", expected, "take shorter runs, one by one")
+        return np.arange(1, int(jumps * duration) + 2) / jumps
+
+
+@final
+@dataclass(frozen=True)
 class Chirp(Signal):
     """A sine whose frequency moves linearly from `f_start` to `f_stop`, then stays.
 
@@ -242,5 +278,5 @@ class Chirp(Signal):
         return 1 / max(self.f_start, self.f_stop)
 
 
-sine, step, ramp, triangle, chirp = Sine, Step, Ramp, Triangle, Chirp
+sine, step, ramp, triangle, square, chirp = Sine, Step, Ramp, Triangle, Square, Chirp
 SIGNALS: dict[str, Callable[..., Signal]] = {name: globals()[name] for name in __all__}

@@ -14,6 +14,9 @@ import xarray
 
 import piezo_sym
 from piezo_sym import sine
+from piezo_sym.cli.simulate import simulate as simulate_command
+from piezo_sym.cli.words import spelled
+from piezo_sym.run.signals import SIGNALS
 
 ROOT = Path(__file__).parents[2]
 
@@ -151,6 +154,20 @@ def test_a_bank_takes_another_size(call, tmp_path):
         assert result.sizes["hysteron"] == 5
 
 
+def test_a_signal_takes_its_numbers_by_name(call):
+    """A sine about 50 V; its end is its start."""
+    words = ("V_in=sine(100, 100, 50)", "V_in=sine(100, 100, offset=50)")
+    run = ("simulate", "piezo_stack", "--duration", "0.01", "-i")
+    shown = [call(*run, word).out for word in words]
+    assert shown[0] == shown[1]
+    assert re.search(r"V_in +50 ", shown[0])
+
+
+def test_the_help_spells_every_signal_as_it_is_written():
+    said = " ".join(simulate_command.__doc__.split())
+    assert all(spelled(name) in said for name in SIGNALS)
+
+
 REFUSED = [
     (("-i", "V_in"), "--input: 'V_in' has no '='; expected NAME=VALUE"),
     (("-i", "V_in=high"), "--input V_in: 'high' is no number; expected such as 0.5 or 1e-3"),
@@ -158,8 +175,13 @@ REFUSED = [
     (("-i", "V_in=sin(1,2)"), "--input V_in: 'sin' is no signal; did you mean 'sine'?"),
     (("-i", "V_in=exit(1)"), "--input V_in: 'exit' is no signal; known: chirp, ramp"),
     (("-i", "V_in=__import__('os')"), "--input V_in: '__import__('os')' is no number"),
-    (("-i", "V_in=sine(100)"), "--input V_in: sine does not take 1 numbers; see `piezo-sym"),
-    (("-i", "V_in=sine(1,2,3,4,5)"), "--input V_in: sine does not take 5 numbers"),
+    (("-i", "V_in=sine(100)"), "--input V_in: sine does not take '100'; expected sine(ampl"),
+    (("-i", "V_in=sine(1,2,3,4,5)"), "--input V_in: sine does not take '1,2,3,4,5'; expected"),
+    (
+        ("-i", "V_in=sine(1,2,3,bias=4)"),
+        "--input V_in: sine does not take '1,2,3,bias=4'; expected sine",
+    ),
+    (("-i", "V_in=sine(1,2,offset=x)"), "--input V_in: 'x' is no number"),
     (("-i", "V_in=sine(1,x)"), "--input V_in: 'x' is no number"),
     (("-i", "V_in=sine(1,-2)"), "--input V_in: sine.frequency: '-2.0' is not positive"),
     (("-i", "V_in=sine(1,2"), "--input V_in: 'sine(1,2' is no number"),

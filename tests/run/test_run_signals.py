@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from piezo_sym import chirp, ramp, samples, simulate, sine, step, triangle
+from piezo_sym import chirp, ramp, samples, simulate, sine, square, step, triangle
 from piezo_sym.errors import UsageError
 from piezo_sym.run.inputs import Inputs, as_signal
 
@@ -104,6 +104,38 @@ def test_triangle_has_its_period(amplitude, frequency, n):
     bound = 1e-9 * (1 + abs(amplitude))
     assert np.abs(signal(t + n / frequency) - signal(t)).max() < bound
     assert np.abs(signal(t)).max() <= abs(amplitude)
+
+
+@pytest.mark.parametrize("frequency", [1.0, 3.0, 7.3, 1e3 / 3])
+def test_square_jumps_at_its_breaks_and_nowhere_else(frequency):
+    signal = square(2, frequency, 1)
+    breaks = np.array(signal.breaks(20 / frequency))
+    assert breaks == pytest.approx(np.arange(1, 40) / (2 * frequency))
+    after = np.where(np.arange(1, 40) % 2, -1.0, 3.0)
+    assert signal(0.0) == 3
+    assert np.array_equal(signal(breaks), after)
+    assert np.array_equal(signal(np.nextafter(breaks, 0)), 2 - after)
+    assert np.array_equal(signal(breaks + 0.49 / (2 * frequency)), after)
+    segments = Inputs((signal,), 20 / frequency).segments
+    assert [segment.at(segment.stop)[0] for segment in segments] == [3, *after]
+
+
+def test_a_square_wave_is_a_run_through_its_samples():
+    """Samples in which each jump's time stands twice are the same run."""
+    half, volts = 1e-3, 40.0
+    times = np.repeat(half * np.arange(7), 2)[1:-1]
+    values = np.tile(np.repeat([volts + 5, 5 - volts], 2), 3)
+    wave, knots = (
+        simulate("piezo_stack", inputs={"V_in": drive}, duration=6e-3, times=7, rtol=1e-9)
+        for drive in (square(volts, 0.5 / half, 5), (times, values))
+    )
+    assert np.abs(wave.q - knots.q).max() < 1e-9 * np.abs(knots.q).max()
+    assert np.array_equal(wave.V_in, knots.V_in)
+
+
+def test_a_square_wave_that_jumps_too_often_is_refused():
+    with pytest.raises(UsageError, match=r"square\.frequency: over 100,000 jumps until 1 s"):
+        simulate("piezo_stack", inputs={"V_in": square(1, 1e6)}, duration=1)
 
 
 def test_chirp_sweeps_then_stays():

@@ -18,7 +18,7 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.records import DOUBLE, POINTER, c_record
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.samples import Samples
-from piezo_sym.run.signals import Chirp, Constant, Ramp, Signal, Sine, Step
+from piezo_sym.run.signals import Chirp, Constant, Ramp, Signal, Sine, Square, Step
 
 _CALLED = ctypes.CFUNCTYPE(DOUBLE, DOUBLE)
 #: Terms of a piece, and how large the last of them may be, as a part of the signal's size.
@@ -100,7 +100,7 @@ def pieces_of(signal: Signal, low: float, high: float, duration: float) -> Piece
         return _lines(signal, low, high)
     at = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
     to_terms = np.linalg.inv(np.polynomial.chebyshev.chebvander(at, TERMS - 1)).T
-    first = 1 if isinstance(signal, Step | Ramp) else ceil(FIRST * (high - low) / duration)
+    first = 1 if isinstance(signal, Step | Ramp | Square) else ceil(FIRST * (high - low) / duration)
     edges = np.linspace(low, high, max(1, min(first, FIRST)) + 1)
     starts, stops = edges[:-1], edges[1:]
     done: list[tuple[FloatArray, FloatArray]] = []
