@@ -22,7 +22,6 @@ from itertools import pairwise
 from typing import Any, TypeAlias, final
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 from piezo_sym.analysis.stroboscope import FLOOR, Period, Stroboscope
 from piezo_sym.errors import RunError
@@ -194,6 +193,8 @@ def zeros(strobe: Stroboscope, known: Sequence[Settled]) -> list[Settled]:
     together are found.  Where nothing settles on the way to a zero, for the settled state jumps
     there, a warning says so.
     """
+    from scipy.optimize import brentq, minimize_scalar  # loads slowly, and runs need none
+
     for a, b in pairwise(known):
         if a.drift == b.drift == 0:
             what = f"any temperature from {a.temperature:.6g} K to {b.temperature:.6g} K is steady"

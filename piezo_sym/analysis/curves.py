@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from typing import TypeAlias, final
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from piezo_sym.analysis.balance import Settled, SteadyWarning, settled
 from piezo_sym.analysis.stroboscope import Stroboscope
@@ -151,6 +150,8 @@ def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, CurvePoint, 
 
 def _fold(strobe: Stroboscope, a: CurvePoint, b: CurvePoint, c: CurvePoint) -> CurvePoint:
     """Return the point of extreme frequency between three, by log f over log T."""
+    from scipy.optimize import minimize_scalar  # loads slowly, and runs need none
+
     points = [b]
     way = 1.0 if b.place[0] > a.place[0] else -1.0
 

@@ -137,10 +137,10 @@ def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None)
 
 
 def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
-    import xarray
-
     if path is None:
         return initial
+    import xarray
+
     if initial:
         raise UsageError("--initial is given too", "--continue", "one of them")
     if not path.exists():

@@ -48,15 +48,16 @@ def examined_model(model: Model) -> Report:
 
 
 def _report(subject: IPHS | Model, model: Model) -> Report:
+    started()
+    from piezo_sym.proofs.report import Report, Row, Verdict  # meanwhile
+
     seconds = PATIENCE + MORE_PATIENCE * max(0, len(model.elements) - SMALL)
     *reports, last = messages(_examiner(), subject, seconds)
     if isinstance(last, PiezoError):
         raise last
-    from piezo_sym.proofs.report import Report, Row, Verdict
-    from piezo_sym.verification.examine import unfinished
-
     if isinstance(last, Report):
         return last
+    from piezo_sym.verification.examine import unfinished
 
     row = Row("derivation", "", "the system, derived", Verdict.OPEN, reason=last)
     return unfinished(reports[-1] if reports else Report(model.name, (row,)), last)

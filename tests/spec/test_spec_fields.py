@@ -139,8 +139,8 @@ def test_heat_without_any_body_is_answered_with_one():
 def test_an_input_that_is_not_declared():
     message = refused_edit(('input = "V_in"', 'input = "Vin"'))
     assert message == (
-        "spec: elements.supply.input: 'Vin' is no input of this spec; did you mean 'V_in'? "
-        'or declare it in [inputs]: Vin = { unit = "V" }'
+        "spec: elements.supply.input: 'Vin' is no input of this spec; did you mean 'V_in'?"
+        '; or declare it in [inputs]: Vin = { unit = "V" }'
     )
 
 

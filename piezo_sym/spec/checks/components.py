@@ -52,7 +52,7 @@ def _check_fits(
     if given not in known:
         example = f'{given} = {{ value = 1.0, unit = "{meant.unit}" }}'
         example = example.replace("value = 1.0, ", "") if what == "input" else example
-        other = f"{nearest(given, known)} or " if known else ""
+        other = f"{nearest(given, known)}; or " if known else ""
         remedy = f"{other}declare it in [{what}s]: {example}" if NAME.fullmatch(given) else other
         expected = (
             f"a number, or {with_article(what)}" if what == "parameter" else with_article(what)

@@ -52,7 +52,7 @@ def _unknown_reference(
 ) -> SpecError:
     what = f"{quote(given)} is no {to} of this spec"
     if to == "input":
-        meant = f"{nearest(given, known)} or " if known else ""
+        meant = f"{nearest(given, known)}; or " if known else ""
         unit = _input_unit(element)
         remedy = f'{meant}declare it in [inputs]: {given} = {{ unit = "{unit}" }}'
         return SpecError(what, where, remedy=remedy)
