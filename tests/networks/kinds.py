@@ -258,7 +258,7 @@ def storage(draft):
         heated = f"{low}*{c}*exp({S}/{c})*{draft.pick(hot)}"
         energy = f"{heated} + {draft.pick((energy, f'{phi}**2/{L}'))}"
         draft.bodies[draft.name] = low
-        draft.assume.append(f"{low} > 0")
+        draft.assume += [f"{low} > 0", f"{c} > 0"]
         states[S] = {"rate": "entropy"}
     return {"energy": energy, "states": states}
 
