@@ -10,10 +10,10 @@ slots are of one bank.  An entry may use lane symbols of its own row's or column
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import final
+from typing import Any, final
 
 import sympy as sp
 
@@ -123,7 +123,8 @@ class LaneMatrix:
             If there is no such row or column.
         """
         row, col = place if isinstance(place, tuple) else (place, 0)
-        at = _place_of(row, self.rows, "row"), _place_of(col, self.cols, "column")
+        rows, cols = ([slot.label for slot in slots] for slots in (self.rows, self.cols))
+        at = _place_of(row, rows, "row"), _place_of(col, cols, "column")
         same = sp.KroneckerDelta(sp.Symbol("j"), sp.Symbol("k"))
         return self.full.get(at, sp.S.Zero) + self.own.get(at, sp.S.Zero) * same
 
@@ -154,8 +155,8 @@ class LaneMatrix:
         """Whether every entry is zero as it stands."""
         return not self.full and not self.own
 
-    def explicit(self, counts: Mapping[str, int], lane: int = 1) -> sp.ImmutableMatrix:
-        """Return the SymPy matrix for banks of the given sizes.
+    def explicit(self, counts: Mapping[str, int], lane: int = 1) -> NamedMatrix:
+        """Return the SymPy matrix for banks of the given sizes, whose entries keep their labels.
 
         Parameters
         ----------
@@ -163,9 +164,11 @@ class LaneMatrix:
         lane : for a matrix that belongs to one lane (`at`), which one, from 1.
         """
         rows, cols = _places(self.rows, counts), _places(self.cols, counts)
-        return sp.ImmutableMatrix(
+        made = NamedMatrix(
             len(rows), len(cols), lambda r, c: self._entry(rows[r], cols[c], counts, lane)
         )
+        made.labels = _labels(self.rows, rows), _labels(self.cols, cols)
+        return made
 
     def _entry(
         self, row: tuple[int, int], col: tuple[int, int], counts: Mapping[str, int], lane: int
@@ -187,17 +190,31 @@ class LaneMatrix:
         return all(place == lane for slot, place in places if slot.bank == self.at)
 
 
+@final
+class NamedMatrix(sp.ImmutableMatrix):  # type: ignore[misc]  # SymPy has no types
+    """A SymPy matrix with entries by labels, too; what is computed from it has places alone."""
+
+    labels: tuple[Sequence[str], Sequence[str]] = ((), ())
+
+    def __getitem__(self, place: Any) -> Any:
+        """Return an entry by labels (``J0["p", "Q_C"]``), or what SymPy returns."""
+        row, col = place if isinstance(place, tuple) and len(place) == 2 else (place, 0)
+        if isinstance(row, str) or isinstance(col, str):
+            rows, cols = self.labels
+            place = _place_of(row, rows, "row"), _place_of(col, cols, "column")
+        return super().__getitem__(place)
+
+
 def vector(rows: tuple[Slot, ...], lanes: Lanes, entries: Mapping[int, sp.Expr]) -> LaneMatrix:
     """Return a column vector with one entry per slot; zeros drop out."""
     return LaneMatrix(rows, ONE_SLOT, lanes, {(r, 0): e for r, e in entries.items() if e != 0})
 
 
-def _place_of(asked: int | str, slots: tuple[Slot, ...], what: str) -> int:
-    labels = [slot.label for slot in slots]
+def _place_of(asked: int | str, labels: Sequence[str], what: str) -> int:
     if isinstance(asked, str) and asked in labels:
         return labels.index(asked)
-    if isinstance(asked, int) and -len(slots) <= asked < len(slots):
-        return asked % len(slots)
+    if isinstance(asked, int) and -len(labels) <= asked < len(labels):
+        return asked % len(labels)
     remedy = nearest(str(asked), labels)
     raise UsageError(f"{quote(asked)} is no {what}", "matrix", remedy=remedy)
 
@@ -208,6 +225,10 @@ def _places(slots: tuple[Slot, ...], counts: Mapping[str, int]) -> list[tuple[in
         for n, slot in enumerate(slots)
         for lane in (range(1, counts[slot.bank] + 1) if slot.bank else (0,))
     ]
+
+
+def _labels(slots: tuple[Slot, ...], places: list[tuple[int, int]]) -> list[str]:
+    return [f"{slots[n].label}_{lane}" if lane else slots[n].label for n, lane in places]
 
 
 def _added(left: Entries, right: Entries) -> dict[tuple[int, int], sp.Expr]:

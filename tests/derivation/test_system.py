@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from piezo_sym import derive
+from piezo_sym import derive, load
 from piezo_sym.algebra.notation import latex
+from piezo_sym.errors import UsageError
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import MODELS
 
@@ -73,6 +74,17 @@ def test_text_of_a_matrix_shows_its_labels(iphs):
     lines = str(iphs.system.J0).splitlines()
     assert lines[0].split() == ["q", "p", "Q_C", "phi_j", "S"]
     assert lines[3].split() == ["Q_C", "0", "-alpha_transducer", "0", "1", "0"]
+
+
+def test_entries_have_names_where_no_bank_has(iphs):
+    plain, written = derive(load("oscillator")), iphs.expand({"hysteron": 3})
+    assert plain.J0["q", "p"] == plain.J0[0, 1] == 1
+    assert plain.rhs["q"] == plain.rhs[0]
+    assert plain.processes[0].J["S", "p"] == 1
+    assert written.J0["phi_3", "Q_C"] == -1
+    assert written.g["p", "load"] == 1
+    with pytest.raises(UsageError, match="'phi_4' is no row; did you mean 'phi_3'"):
+        written.J0["phi_4", "Q_C"]
 
 
 def test_expand_refuses_what_is_no_bank(iphs):
