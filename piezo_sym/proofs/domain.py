@@ -81,7 +81,7 @@ def not_shown(iphs: IPHS, assumptions: Assumptions, solver: Asks) -> str:
     The spec's own values are a point of it; where that is too close to tell, the solver looks for
     another.  Both are evaluated exactly.
     """
-    if _inside(assumptions, _own_values(iphs)):
+    if _inside(assumptions, own_values(iphs)):
         return ""
     question = assumptions.question("the domain is empty", NEVER)
     answer = solver.ask(replace(question, whole=True).query)
@@ -100,7 +100,7 @@ def _inside(assumptions: Assumptions, points: tuple[Mapping[str, Value], ...]) -
     return bool(points) and all(all_hold(conditions, point) for point in points)
 
 
-def _own_values(iphs: IPHS) -> tuple[dict[str, Value], ...]:
+def own_values(iphs: IPHS) -> tuple[dict[str, Value], ...]:
     """Return the values of a spec in each lane of its banks; none if one of them has no value."""
     model = iphs.model
     lists = {name: parameter.lanes for name, parameter in model.parameters.items()}

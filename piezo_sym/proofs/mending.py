@@ -30,7 +30,7 @@ def mending(law: Expr, letter: str, shown: Shown) -> str:
     slope = slope_of(law, letter) if letter else None
     factors = list(_factors(law if slope is None else slope))
     rest = [f for f in factors if letter and letter in names(f)]
-    if rest and not shown(reduce(mul, rest), letter):
+    if letter and slope is None and not (rest and shown(reduce(mul, rest), letter)):
         return ""
     kept = [f for f in factors if f not in rest and not shown(f, "")]
     if not any(map(names, kept)):

@@ -20,6 +20,7 @@ from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Asked, tried
 from piezo_sym.proofs.continuity import jumps, needed
+from piezo_sym.proofs.domain import own_values
 from piezo_sym.proofs.laws import on_branches
 from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
@@ -34,6 +35,8 @@ LANES = 2
 TRIES = (1, 2, 3)
 
 LOOSE = "the domain may bound what drives the element, in a way that is not looked at"
+#: Rows whose questions may be about parameters and inputs alone.
+DECLARED = frozenset({"welldef", "exergy", "environment"})
 #: Once so many questions of an obligation are open, the rest is not asked.
 MOST_OPEN = 4
 
@@ -64,8 +67,8 @@ def prove(
         verdict, witness, reason = _not_proved(values, known) or (verdict, witness, reason)
     if verdict is Verdict.REFUTED and obligation.sign:
         reason += _mended(obligation.sign, obligation.questions, asked)
-    if verdict is Verdict.REFUTED and obligation.id == "welldef":
-        reason += _declared(obligation.questions, iphs, reason)
+    if verdict is Verdict.REFUTED and obligation.id in DECLARED:
+        reason += _declared(obligation.questions, iphs, asked)
     return Row(
         obligation.id,
         obligation.element,
@@ -249,13 +252,36 @@ def _mended(sign: SignOf, questions: tuple[Question, ...], solver: Asks) -> str:
     return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
 
 
-def _declared(questions: Iterable[Question], iphs: IPHS, reason: str) -> str:
-    """Return what parameters alone have to keep, as n > 0, where a law has no value for them."""
-    for claim in (question.original for question in questions):
-        own = reason.startswith(f"{spell(claim.left)} = ") and claim.op == ">"
-        if own and {*names(claim.left)} <= iphs.model.parameters.keys():
-            return f"; the condition '{condition_text(claim)}' in [domain] mends it"
-    return ""
+def _declared(questions: tuple[Question, ...], iphs: IPHS, solver: Asks) -> str:
+    """Return what parameters and inputs have to keep, as n > 0, for all questions to be answered.
+
+    Values of the spec keep it, too; of what must not be zero that says the sign.
+    """
+    known = iphs.model.parameters.keys() | iphs.model.inputs.keys()
+    broken = [q.original for q in questions if _answered(q, solver)]
+    if not all(names(claim.left) and known >= {*names(claim.left)} for claim in broken):
+        return ""
+    points = own_values(iphs)
+
+    def kept(conditions: tuple[Cmp, ...]) -> bool:
+        return all(all_hold(conditions, point) for point in points)
+
+    def mended(conditions: tuple[Cmp, ...]) -> bool:
+        within = (replace(q, where=(*conditions, *q.where)) for q in questions)
+        return kept(conditions) and _asked(within, solver) is None
+
+    found: tuple[Cmp, ...] = ()
+    for claim in broken:
+        ops = (">", "<") if claim.op == "!=" else (claim.op,)
+        ways = (Cmp(op, claim.left, claim.right) for op in ops)
+        found += tuple(way for way in ways if kept((way,)) and way not in found)[:1]
+    if not found or not mended(found):
+        return ""
+    for claim in found:  # what others imply is left out
+        rest = tuple(c for c in found if c != claim)
+        found = rest if rest and mended(rest) else found
+    said, many = " and ".join(f"'{condition_text(claim)}'" for claim in found), len(found) > 1
+    return f"; the condition{'s' * many} {said} in [domain] mend{'' if many else 's'} it"
 
 
 def _value(law: Expr, values: Mapping[str, Fraction]) -> str:

@@ -27,7 +27,11 @@ ROWS = [("passive", "contact"), ("exergy", ""), ("environment", "")]
 
 
 def rows(law):
-    found = {(r.id, r.element): r for r in decide(derive(parse(SPEC.format(law)))).rows}
+    return decided(SPEC.format(law))
+
+
+def decided(text):
+    found = {(r.id, r.element): r for r in decide(derive(parse(text))).rows}
     return [found[name] for name in ROWS]
 
 
@@ -53,3 +57,34 @@ def test_one_that_may_be_negative_is_refuted(law):
 def test_too_many_kinks_are_open():
     law = " + ".join(f"abs(lam - {n}*lam/T_0*T_0)" for n in range(2, 12))
     assert {row.verdict for row in rows(law)} == {Verdict.OPEN}
+
+
+@pytest.mark.parametrize(
+    ("law", "said"),
+    [
+        ("lam", "; the conditions 'lam >= 0' and 'T_e > 0' in [domain] mend it"),
+        ("lam**2/lam", "; the conditions 'lam > 0' and 'T_e > 0' in [domain] mend it"),
+        ("abs(lam)", "; the condition 'T_e > 0' in [domain] mends it"),
+        ("lam*(c*T_0 - 2*c*T_a)/(c*T_0)", ""),
+    ],
+)
+def test_what_mends_heat_exchange_with_an_environment_is_said(law, said):
+    text = SPEC.format(law).replace('"T_e > 0"', "")
+    for row in decided(text)[1:]:
+        assert row.verdict is Verdict.REFUTED
+        assert row.reason.endswith(said)
+        assert ("mend" in row.reason) == bool(said)
+    if said:
+        conditions = ", ".join(f'"{condition}"' for condition in said.split("'")[1::2])
+        mended = decided(text.replace("assume = []", f"assume = [{conditions}]"))
+        assert {row.verdict for row in mended} == {Verdict.PROVED}
+
+
+def test_no_condition_mends_a_power_whose_sign_is_that_of_its_letter():
+    text = SPEC.format("lam").replace("[inputs]", 'W = { value = 1.0, unit = "N" }\n[inputs]')
+    damper = 'damper = { kind = "damper", between = ["tip", "wall"], force = "W", heats = "a" }'
+    mass = 'mass = { kind = "mass", at = "tip", mass = "lam" }'
+    found = decide(derive(parse(f"{text}{damper}\n{mass}\n"))).rows
+    (row,) = (row for row in found if (row.id, row.element) == ("passive", "damper"))
+    assert row.verdict is Verdict.REFUTED
+    assert "mend" not in row.reason
