@@ -8,6 +8,7 @@ Input: the four parts.  Output: an exception whose ``str`` is one printable line
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
+from math import nan
 from typing import Any, ClassVar, final
 
 MAX_QUOTE = 60
@@ -71,10 +72,12 @@ class FileError(PiezoError):
 class RunError(PiezoError):
     """A simulation that left its domain or could not go on; says when and why.
 
-    `partial` is the Dataset so far, where `simulate` had begun to step.
+    `partial` is the Dataset so far, where `simulate` had begun to step; `time` is when inputs leave
+    the domain [s].
     """
 
     partial: Any = None
+    time: float = nan
     reached: Any = None  # times and `Trajectory` that `partial` is made of
 
 

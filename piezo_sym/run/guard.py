@@ -93,7 +93,9 @@ def _left(system: DrivenModule, segment: Segment, x: FloatArray, times: FloatArr
     t = float(times[-1])
     if times.size > 1:
         t = crossing(system, float(times[-2]), t, lambda time: (x, segment.at(time)))
-    return domain_error(system, t, x, segment.at(t))
+    error = domain_error(system, t, x, segment.at(t))
+    error.time = t
+    return error
 
 
 def _checked_times(

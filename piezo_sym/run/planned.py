@@ -8,7 +8,7 @@ C says which condition of the domain the state leaves, when, and with which valu
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
@@ -135,7 +135,11 @@ def compiled_run(
     step = request.step
     if request.starts:
         _check_dissipative(engine, step)
-    check_inputs(system, x, samples)
+    try:
+        check_inputs(system, x, samples)
+    except RunError as left:
+        left.reached = _until(left.time, request, system, x, samples)
+        raise
     rtol = max(request.rtol, LEAST_RTOL)
     accuracy: dict[str, object] = {"rtol": rtol, "order": 2 * choice(rtol)[0]}
     try:
@@ -153,6 +157,16 @@ def compiled_run(
         "halvings": trajectory.halvings,
     }
     return trajectory, {"method": METHOD, **accuracy, **work}
+
+
+def _until(
+    left: float, request: Request, system: DrivenModule, x: FloatArray, samples: FloatArray
+) -> tuple[FloatArray, Trajectory]:
+    """Return a run to the last sample before its inputs leave the domain; its own error counts."""
+    before = samples[samples < left]
+    inside = (float(before[-1]) + left) / 2 - system.inputs.start
+    shorter = replace(system, inputs=replace(system.inputs, duration=inside))
+    return before, PlannedRun(request, shorter, x).go(before)[0]
 
 
 def _check_dissipative(engine: Engine, step: FixedStep | None) -> None:

@@ -55,3 +55,24 @@ def test_a_run_that_is_interrupted_keeps_what_it_has(method):
     partial = stopped.value.partial
     assert 0.05 <= partial.time[-1] < 9
     assert partial.attrs["stopped"] == "stopped by the user"
+
+
+@pytest.mark.parametrize("times", [1001, 3])
+@pytest.mark.parametrize("method", [None, "LSODA"])
+def test_a_run_whose_inputs_leave_the_domain_carries_what_was_before(method, times):
+    colder = {"T_e": lambda t: 298.15 - 20 * t}  # T_0 after 0.1 s
+    with pytest.raises(RunError, match=r"leaves the domain at t = 0\.1 s") as stopped:
+        simulate("piezo_stack", inputs=DRIVE | colder, duration=0.25, method=method, times=times)
+    partial = stopped.value.partial
+    assert partial.time.values[-1] == (0 if times == 3 else pytest.approx(0.09975))
+    assert partial.attrs["stopped"] == str(stopped.value)
+    if times > 3:
+        until = partial.time.values
+        whole = simulate("piezo_stack", inputs=DRIVE | colder, duration=until[-1], times=until)
+        assert np.abs(partial.q - whole.q).max() < 1e-4 * float(np.abs(whole.q).max())
+
+
+def test_a_run_that_is_to_stop_before_its_inputs_leave_the_domain_is_a_run():
+    colder = {"T_e": lambda t: 298.15 - 20 * t}
+    run = simulate("piezo_stack", inputs=DRIVE | colder, duration=0.25, stop="T_e < 297")
+    assert run.time.values[-1] == pytest.approx(0.0575)
