@@ -111,7 +111,7 @@ def _read(text: str, where: str, value: float | None) -> Unit:
     factor, dimension = Fraction(1), [Fraction(0)] * len(BASES)
     found = _terms(text, where)
     alone = len(found) == 1 and found[0][1] == 1
-    terms = [(_named(name, where, value, alone), power) for name, power in found]
+    terms = [(_named(name, where, value, alone, text), power) for name, power in found]
     for unit, power in terms:
         factor *= _raised(unit.factor, power, text, where)
         dimension = [d + p * power for d, p in zip(dimension, unit.dimension, strict=True)]
@@ -190,8 +190,8 @@ def _registry() -> Any:
 
 
 @lru_cache(maxsize=256)
-def _named(name: str, where: str, value: float | None, alone: bool = True) -> Unit:
-    """Return one named unit; its coherent spelling drops the prefix (``uF`` gives ``F``).
+def _named(name: str, where: str, value: float | None, alone: bool = True, text: str = "") -> Unit:
+    """Return one named unit of a text; its coherent spelling drops the prefix (``uF`` gives ``F``).
 
     One with an offset is a temperature if it stands alone; else it is a difference of them, as in
     W/degC.
@@ -200,7 +200,7 @@ def _named(name: str, where: str, value: float | None, alone: bool = True) -> Un
         powers = (*COHERENT[name], *(0,) * len(BASES))[: len(BASES)]
         return Unit(name, name, Fraction(1), tuple(map(Fraction, powers)))
     if not any(root in UNITS for _, root, _ in _registry().parse_unit_name(name)):
-        raise SpecError(f"unknown unit {quote(name)}", where, remedy=_meant(name))
+        raise SpecError(f"unknown unit {quote(name)}", where, remedy=_meant(name, text))
     try:
         factor, base = _registry().get_base_units(name)
         origin = _registry().Quantity(Fraction(0), name).to_base_units().magnitude
@@ -220,11 +220,13 @@ def _named(name: str, where: str, value: float | None, alone: bool = True) -> Un
     return Unit(name, _bare(name, Fraction(factor), dimension), Fraction(factor), dimension)
 
 
-def _meant(name: str) -> str:
-    """Return what to write for a name that is none: N*m for Nm, else one that is like it."""
+def _meant(name: str, text: str) -> str:
+    """Return what to write for a name that is none: N*s/m for Ns/m, else a name that is like it."""
     cuts = ((name[:n], name[n:]) for n in range(1, len(name)))
     two = next((f"{a}*{b}" for a, b in cuts if a in COMMON and b in COMMON), "")
-    return f"write {quote(two)}" if two else nearest(name, COMMON)
+    text = re.sub(rf"/{name}(?![A-Za-z])", f"/({two})", text)
+    text = re.sub(rf"(?<![A-Za-z]){name}(?![A-Za-z])", two, text)
+    return f"write {quote(text or two)}" if two else nearest(name, COMMON)
 
 
 def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:

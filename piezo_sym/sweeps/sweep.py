@@ -9,10 +9,11 @@ Input: a model, the quantities to sweep and their values, and what a single run 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from contextlib import ExitStack, closing
 from dataclasses import replace
+from inspect import signature
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -20,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from piezo_sym.errors import UsageError, quote
+from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.files import path_of
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
@@ -28,6 +29,7 @@ from piezo_sym.run.checks import whole
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
+from piezo_sym.run.simulate import simulate
 from piezo_sym.sweeps.frame import Memory, Results, frame_of
 from piezo_sym.sweeps.plan import Plan, Reduction, read_plan
 from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
@@ -61,6 +63,7 @@ def sweep(
     threads: int | None = None,
     store: str | Path | None = None,
     progress: object = None,
+    **others: object,
 ) -> xarray.Dataset:
     """Run a model over a grid of parameters, sizes, inputs and initial values.
 
@@ -119,6 +122,7 @@ def sweep(
     >>> dict(found.q.sizes)
     {'V_in': 2, 'L': 3, 'time': 1001}
     """
+    refuse_others(others)
     count = processors() if threads is None else whole(threads, "sweep.threads", 1)
     refuse_executor(executor, threads)
     module: Any = module_of(model)
@@ -146,6 +150,16 @@ def run_missing(sink: Results, submit: Submit, at_once: int, progress: object, t
             sink.take(region, result)
             done += result.errors.size
             tell(done, total)
+
+
+def refuse_others(others: Iterable[str]) -> None:
+    """Raise `UsageError` if a sweep is given what it does not take, such as events of its runs."""
+    for name in others:
+        if name in signature(simulate).parameters:
+            remedy = "leave it out, or call simulate() for each run"
+            raise UsageError(f"runs of a sweep have no {name}", f"sweep.{name}", remedy=remedy)
+        known = [word for word in signature(sweep).parameters if word != "others"]
+        raise UsageError(f"unknown argument {quote(name)}", "sweep", remedy=nearest(name, known))
 
 
 def refuse_executor(executor: object, threads: object) -> None:

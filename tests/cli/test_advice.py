@@ -71,7 +71,7 @@ def test_a_sweep_is_made_in_python(capsys):
 
 @pytest.mark.parametrize(
     ("unit", "advice"),
-    [("Nm", "'N*m'"), ("Ns/m", "'N*s'"), ("%/K", "'percent/K'"), ("N m", "'N*m'")],
+    [("Nm", "'N*m'"), ("Ns/m", "'N*s/m'"), ("%/K", "'percent/K'"), ("N m", "'N*m'")],
 )
 def test_a_unit_as_others_write_it(unit, advice):
     with pytest.raises(PiezoError) as error:

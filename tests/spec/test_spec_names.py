@@ -269,3 +269,8 @@ def test_labels_of_nodes(node):
     message = refused_edit(('at = "tip"\nmass', f'at = "{node}"\nmass'))
     assert message.startswith("spec: elements.mass.at: ")
     assert "is not a label; expected up to 40 letters, digits or . _ + -" in message
+
+
+def test_a_state_without_a_name_is_refused():
+    message = refused_edit(('state = "q"', 'state = ""'))
+    assert f"elements.spring: '' is not a name; {SHAPE}" in message

@@ -188,6 +188,9 @@ def test_texts_that_are_no_units(text):
         ("squared", "unknown unit 'squared'"),
         ("dB", "is logarithmic"),
         ("Np", "is logarithmic"),
+        ("Nm", "unknown unit 'Nm'; write 'N*m'"),
+        ("Ns/m", "unknown unit 'Ns'; write 'N*s/m'"),
+        ("J/kgK", "unknown unit 'kgK'; write 'J/(kg*K)'"),
     ],
 )
 def test_words_that_are_no_units(text, answer):

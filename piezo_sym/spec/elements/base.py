@@ -239,4 +239,5 @@ def positive(law: Expr) -> Cmp:
 
 def state_symbol(element: Element, name: str) -> str:
     """Return the symbol of an element's state: as given, else its kind's letter and its name."""
-    return getattr(element, "state", None) or f"{element.letter}_{name}"
+    given = getattr(element, "state", None)
+    return f"{element.letter}_{name}" if given is None else str(given)
