@@ -72,16 +72,36 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
     if not why and (name := next(many, None)):
         why = f", and '{name}' is of a bank, which has no law for all lanes together"
     what = f"elements {_listed(names)} fix each other's {word}{place}{why}"
+    node, mass = _massless(laws, edges)
+    put = f"put {with_article(mass)} at '{node}'" if node else ""
+    where = "which" if not why and place.endswith(f" '{node}'") else f"and node '{node}'"
+    what += f", {where} has no {mass}" * bool(node)
     if fixed:
         expected, remedy = _inverse(*fixed[0])
+        if node:
+            return NetworkError(what, "network", f"one, or {expected}", f"{put}; or {remedy}")
         remedy = f"{remedy}; or {_apart(ports, word == MIXED)}" if len(fixed) > 1 else remedy
         return NetworkError(what, "network", expected, remedy)
+    if node and word == MIXED:
+        return NetworkError(what, "network", f"{with_article(mass)} there", put)
     if THERMAL in [port.domain for port in ports]:
         pumps = [p for p, port in laws.circuit.of(Coupling) if port.second_domain == THERMAL]
         remedy = f"put a resistor in series with {_listed([p.element for p in pumps])}"
         return NetworkError(what, "network", "a current that is free", remedy)
     remedy = _apart(ports, word == MIXED or bool(couplings))
     return NetworkError(what, "network", "independent storage and sources", remedy)
+
+
+def _massless(laws: Laws, edges: list[Edge]) -> tuple[str, str]:
+    """Return the first node whose forces, or torques, are all given, and what it has not."""
+    given = [(edge, _port(edge)) for edge in laws.edges]
+    moved = {n for e, port in given if port.imposes is ACROSS for n in e.branch}
+    for edge in edges:
+        port = _port(edge)
+        bare = [n for n in edge.branch if n not in moved and not is_reference(n)]
+        if port.domain.mechanical and port.imposes is THROUGH and bare:
+            return bare[0], kind_of("store", port.domain, ACROSS).name
+    return "", ""
 
 
 def _listed(names: list[str]) -> str:

@@ -159,8 +159,17 @@ CAUSALITY = {
     ),
     "a force law in series with a spring": (
         spring("s1", "wall", "a") + damper("d1", "a", "wall", force="d*v**3"),
-        "elements 's1', 'd1' fix each other's force at node 'a'",
-        "give the inverse law, velocity = '...' of f",
+        "elements 's1', 'd1' fix each other's force at node 'a', which has no mass; expected one, "
+        "or the law of 'd1' as a function of f",
+        "put a mass at 'a'; or give the inverse law, velocity = '...' of f",
+    ),
+    "a spring and a force on a transducer without a mass": (
+        spring("s1", "x", "wall")
+        + force("s", "x")
+        + capacitor("C1", "a", "gnd")
+        + transducer("t", ("a", "gnd"), ("x", "wall"), "a"),
+        "elements 's1', 's', 'C1' fix each other's variables through 't', and node 'x' has no mass",
+        "expected a mass there; put a mass at 'x'",
     ),
     "a current law in series with a bank": (
         voltage("s", "in", "gnd") + bank("h", "in", "n") + resistor("R1", "n", "gnd", **CUBIC),
