@@ -590,13 +590,13 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
 enum { SIZES = 7 + MODEL(banks) + MODEL(records) };
 
 /*
- * Set up the work space of runs with the sizes of p, in the memory from `at` on; returns how many
- * numbers it takes. Ledgers have `more` rows behind the model's own.
+ * Set up the work space of runs with the sizes of p in `memory`, which may be NULL; returns how
+ * many numbers it takes. Ledgers have `more` rows behind the model's own.
  */
-static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, long *sizes, real *at)
+static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, long *sizes,
+                        real *memory)
 {
-    real *const begin = at;
-    at += MODEL(place_reals)(&m->p, p, at);
+    long at = MODEL(place_reals)(&m->p, p, memory);
     MODEL(sizes)(&m->p, sizes);
     const long n = m->n = sizes[0];
     m->means = sizes[1], m->branches = sizes[2], m->booked = sizes[3] + more;
@@ -604,7 +604,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     m->inputs = MODEL(input_count);
     m->lanes = sizes + 6, m->first = sizes + 6 + MODEL(banks);
     m->given = m->means;
-#define PLACE(array, size) (m->array = at, at += (size))
+#define PLACE(array, size) (m->array = memory ? (void *)(memory + at) : NULL, at += (size))
     PLACE(x, n);
     PLACE(end, n);
     PLACE(rates, STAGES * n);
@@ -623,7 +623,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));
 #undef PLACE
-    return at - begin;
+    return at;
 }
 
 /* State i at a point of the step, which weights of the stages' rates say. */
@@ -1092,15 +1092,14 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {
     m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7;
-    return MODEL(make)(m, p, 0, sizes, (real *)space);
+    return MODEL(make)(m, p, 0, sizes, space);
 }
 
 long MODEL(step_size)(const MODEL(parameters) *p)
 {
     MODEL(block) block;
     long sizes[SIZES];
-    real none[1];
-    const long size = MODEL(made)(&block, p, sizes, none);
+    const long size = MODEL(made)(&block, p, sizes, NULL);
     return size + block.n; /* the largest magnitudes stay from step to step */
 }
 

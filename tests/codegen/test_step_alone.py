@@ -97,6 +97,7 @@ def test_the_example_of_the_header_is_a_program(path, tmp_path):
     files = [example, source.with_suffix(".c"), source.with_name(f"{module.NAME}_step.c")]
     flags = [
         "-std=c99",
+        "-O3",
         "-fopenmp-simd",
         "-Wall",
         "-Wextra",

@@ -34,13 +34,12 @@ void MODEL(sizes_of)(const MODEL(parameters) *p, long *out)
     MODEL(sizes)(&reals, out);
 }
 
-/* Give a batch its places in memory that begins at `b`; returns how many bytes it takes. */
+/* Give a batch its places in memory, which may be NULL; returns how many bytes it takes. */
 static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memory)
 {
     MODEL(block) *m = &b->m;
-    real *at = memory;
-    at += MODEL(make)(m, task->runs->p, task->extra, b->sizes, at);
-#define PLACE(array, size) (b->array = at, at += (size))
+    long at = MODEL(make)(m, task->runs->p, task->extra, b->sizes, memory);
+#define PLACE(array, size) (b->array = memory ? memory + at : NULL, at += (size))
     PLACE(rate, m->n);
     PLACE(side, m->branches);
     PLACE(sums, m->booked);
@@ -61,7 +60,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(some_margin, MODEL(limits));
     PLACE(some_inputs, m->inputs);
 #undef PLACE
-    return (size_t)(at - memory) * sizeof(real);
+    return (size_t)at * sizeof(real);
 }
 
 /* Whether the model has dissipative steps. */
@@ -75,9 +74,8 @@ enum { ALIGNED = 64 };
 long MODEL(batch_size)(const MODEL(task) *task);
 long MODEL(batch_size)(const MODEL(task) *task)
 {
-    real none[1];
     MODEL(batch) b;
-    return (long)(sizeof b + ALIGNED + MODEL(places)(&b, task, none));
+    return (long)(sizeof b + ALIGNED + MODEL(places)(&b, task, NULL));
 }
 
 /* Make a batch in memory of its size, which is aligned as vectors are, and zero. */

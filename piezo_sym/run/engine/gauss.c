@@ -157,13 +157,13 @@ enum { BEND_LOOKS = 4 * STAGES + 3 };
 #endif /* BENDS */
 
 /*
- * Set up the work space of runs with the sizes of p, in the memory from `at` on; returns how many
- * numbers it takes. Ledgers have `more` rows behind the model's own.
+ * Set up the work space of runs with the sizes of p in `memory`, which may be NULL; returns how
+ * many numbers it takes. Ledgers have `more` rows behind the model's own.
  */
-static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, long *sizes, real *at)
+static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, long *sizes,
+                        real *memory)
 {
-    real *const begin = at;
-    at += MODEL(place_reals)(&m->p, p, at);
+    long at = MODEL(place_reals)(&m->p, p, memory);
     MODEL(sizes)(&m->p, sizes);
     const long n = m->n = sizes[0];
     m->means = sizes[1], m->branches = sizes[2], m->booked = sizes[3] + more;
@@ -180,7 +180,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     }
     m->given += GIVEN * paths;
 #endif /* PATHS */
-#define PLACE(array, size) (m->array = at, at += (size))
+#define PLACE(array, size) (m->array = memory ? (void *)(memory + at) : NULL, at += (size))
     PLACE(x, n);
     PLACE(end, n);
     PLACE(rates, STAGES * n);
@@ -211,7 +211,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(cut, (BEND_LOOKS - 1) * m->bends + 1);
 #endif /* BENDS */
 #if defined(LANES)
-    at = begin + (at - begin + LANES - 1) / LANES * LANES;
+    at = (at + LANES - 1) / LANES * LANES;
     PLACE(reached_lanes, n * LANES);
     PLACE(gap_lanes, n * LANES);
     PLACE(mean_lanes, m->given * LANES);
@@ -220,15 +220,15 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(side_lanes, m->branches * LANES);
     PLACE(rows_lanes, m->booked * LANES);
     PLACE(margin_lanes, MODEL(limits) * LANES);
-    m->shared = at, at += MODEL(shared_size)(p) / sizeof(real);
+    PLACE(shared, (long)(MODEL(shared_size)(p) / sizeof(real)));
 #endif /* LANES */
-#undef PLACE
 #if PAIRS
-    m->factor = (MODEL(complex) *)at;
-    m->right = m->factor + PAIRS * MODEL(factor_size_complex)(m);
-    at = (real *)(m->right + n);
+    const long reals = sizeof(MODEL(complex)) / sizeof(real);
+    PLACE(factor, reals * PAIRS * MODEL(factor_size_complex)(m));
+    PLACE(right, reals * n);
 #endif /* PAIRS */
-    return at - begin;
+#undef PLACE
+    return at;
 }
 
 /* State i at a point of the step, which weights of the stages' rates say. */

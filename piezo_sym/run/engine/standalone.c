@@ -5,15 +5,14 @@
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {
     m->over = 1, m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7;
-    return MODEL(make)(m, p, 0, sizes, (real *)space);
+    return MODEL(make)(m, p, 0, sizes, space);
 }
 
 long MODEL(step_size)(const MODEL(parameters) *p)
 {
     MODEL(block) block;
     long sizes[SIZES];
-    real none[1];
-    const long size = MODEL(made)(&block, p, sizes, none);
+    const long size = MODEL(made)(&block, p, sizes, NULL);
     return size + block.n; /* the largest magnitudes stay from step to step */
 }
 
