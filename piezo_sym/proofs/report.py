@@ -58,6 +58,13 @@ class Row:
     points: int = 0
     certificate: tuple[Mapping[str, object], ...] = ()
 
+    @property
+    def why(self) -> str:
+        """The reason, with the witness behind what fails there."""
+        at = ", ".join(f"{name} = {value}" for name, value in (self.witness or {}).items())
+        fails, *more = self.reason.split("; ", 1)
+        return "; ".join([f"{fails} at {at}" if at else fails, *more])
+
     def as_dict(self, model: str) -> dict[str, object]:
         """Return the row as plain data, as ``verify --json`` prints it."""
         return {
@@ -113,12 +120,10 @@ class Report:
         """
         if self.failures:
             row = self.failures[0]
-            at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
             what = f"{row.id} is {row.verdict.value}"
-            reason = f"{row.reason} at {at}" if at else row.reason
             where = f"{self.model}.{row.element}" if row.element else self.model
             raise ProofError(
-                f"{what}: {reason}", where, row.statement, "mend the law or the domain"
+                f"{what}: {row.why}", where, row.statement, "mend the law or the domain"
             )
 
     def summary(self) -> str:
@@ -130,12 +135,11 @@ class Report:
         """Return the verdicts as lines of text."""
         lines = [f"{self.model}: {self.summary()}"]
         for row in self.rows:
-            at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
             attacked = f" ({row.points:,} points)" if row.points else ""
             lines.append(
                 f"  {row.verdict.value:8} {row.id:12} {row.element:12} {row.statement}{attacked}"
             )
-            lines += [f"           {row.reason}{f' at {at}' if at else ''}"] if row.reason else []
+            lines += [f"           {row.why}"] if row.reason else []
         return "\n".join(lines)
 
     __repr__ = __str__
