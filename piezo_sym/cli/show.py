@@ -56,21 +56,26 @@ def _banks(model: Model) -> Iterator[str]:
 
 def _elements(model: Model) -> None:
     """Print the elements with their values in SI, and what inputs and states are if not given."""
+    from piezo_sym.spec.flatten import inputs_of
+
     made = table("Elements", "name", "kind", "where", "laws and values (SI)", "state at t = 0")
     for name, element in model.elements.items():
         laws = "\n".join(_laws(model, name, element))
-        row(made, name, element.kind, _where(element), laws, _start(model, name, element))
+        row(made, name, element.kind, _where(element), laws, _starts(model, name, element))
     console().print(made)
     made = table("Inputs", "name", "unit", "if not given", "what it is")
+    used = inputs_of(model.elements.values())
     for name, entry in model.inputs.items():
-        row(made, name, entry.dimension.si, f"{entry.si:g}", entry.doc)
+        doc = entry.doc if name in used else f"{entry.doc} (no element uses it)".strip()
+        row(made, name, entry.dimension.si, f"{entry.si:g}", doc)
     if model.inputs:
         console().print(made)
 
 
 def _where(element: Element) -> str:
     """Return the nodes of an element, and what else it names."""
-    nodes = [(field, " - ".join(value)) for field, value in element if isinstance(value, tuple)]
+    pairs = [*element, *((name, s.between) for name, s in getattr(element, "states", {}).items())]
+    nodes = [(field, " - ".join(value)) for field, value in pairs if isinstance(value, tuple)]
     found = [text if field == "between" else f"{field} {text}" for field, text in nodes]
     found += [getattr(element, "at", "")] if hasattr(element, "at") else []
     named = (row for row in element.named("thermal_mass", "input") if row[0] != "between")
@@ -93,16 +98,9 @@ def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
         yield text
 
 
-def _start(model: Model, name: str, element: Element) -> str:
-    from piezo_sym.spec.elements.base import state_symbol
-
-    if not element.letter:
-        return ""
-    symbol = state_symbol(element, name)
-    if symbol not in model.initial:
-        return f"{symbol} = 0 (not said)"
-    start = model.initial[symbol]
-    return f"{symbol} = {start}"
+def _starts(model: Model, name: str, element: Element) -> str:
+    symbols = [state.symbol for state in element.own_states(name)]
+    return "\n".join(f"{one} = {model.initial.get(one, '0 (not said)')}" for one in symbols)
 
 
 def _equations(iphs: IPHS) -> Iterator[str]:

@@ -132,8 +132,8 @@ class Part:
         starts = (start for name, start in self.model.initial.items() if name not in gone)
         texts = (part for start in starts for part in _texts(start))
         used = {word for text in texts for word in names(parse_law(text, "initial"))}
-        used |= _inputs_of(self.kept.values())
-        return frozenset(gone | (_inputs_of(self.model.elements.values()) - used))
+        used |= inputs_of(self.kept.values())
+        return frozenset(gone | (inputs_of(self.model.elements.values()) - used))
 
     @cached_property
     def renaming(self) -> Renaming:
@@ -174,7 +174,7 @@ class Part:
             yield name, f"{self.name}_{name}", self.renaming.fields(element, name)
 
 
-def _inputs_of(elements: Iterable[Element]) -> set[str]:
+def inputs_of(elements: Iterable[Element]) -> set[str]:
     return {given for e in elements for _, given in e.named("input")}
 
 

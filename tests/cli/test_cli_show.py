@@ -12,6 +12,20 @@ def test_the_text_has_the_equations_and_the_matrices(call):
         assert title in lines
 
 
+def test_a_storage_shows_its_states_where_they_are_and_how_they_start(call):
+    lines = [" ".join(line.split()) for line in call("show", "gas_piston").out.splitlines()]
+    place = next(n for n, line in enumerate(lines) if line.startswith("gas storage "))
+    assert lines[place].startswith("gas storage q piston - wall energy = N*c_v*T_0*exp(S/(N*c_v))")
+    assert lines[place].endswith("q = 0 (not said)")
+    assert lines[place + 1].endswith("S = 0 (not said)")
+
+
+def test_an_input_that_no_element_uses_is_said_to_be_so(call, spec_file):
+    out = call("show", spec_file("[inputs]", '[inputs]\nF_2 = { unit = "N", doc = "pull" }')).out
+    (unused,) = (line for line in out.splitlines() if "no element uses" in line)
+    assert unused.split() == ["F_2", "N", "0", "pull", "(no", "element", "uses", "it)"]
+
+
 def test_the_domain_says_what_needs_a_condition_that_no_one_wrote(call, spec_file):
     out = call("show", spec_file("deadzone(i, i_0)", "deadzone(i, i_0*(2 - T/T_0))")).out
     domain = out.split("\nDomain\n")[1].split("\n\n")[0].splitlines()
