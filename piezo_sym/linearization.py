@@ -31,7 +31,7 @@ from piezo_sym.errors import RunError, UsageError, quote
 from piezo_sym.files import temporary_folder
 from piezo_sym.module_cache import write_module
 from piezo_sym.modules import module_of
-from piezo_sym.run.checks import FloatArray, known_keys
+from piezo_sym.run.checks import FloatArray, calling, known_keys
 from piezo_sym.run.module import GeneratedModule, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.spec.load import load
@@ -82,6 +82,7 @@ class LinearModel:
         return f"LinearModel({shown})"
 
 
+@calling("linearize")
 def linearize(
     model: str | Path | Model,
     *,

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.errors import RunError
-from piezo_sym.run.checks import FloatArray, known_keys, number
+from piezo_sym.run.checks import FloatArray, calling, known_keys, number
 from piezo_sym.run.module import GeneratedModule, by_name, checked, row_name
 from piezo_sym.run.parameters import (
     LaneValue,
@@ -73,6 +73,7 @@ class OperatingPoint:
         return f"OperatingPoint({values}, {'stable' if self.stable else 'unstable'})"
 
 
+@calling("operating_point")
 def operating_point(
     module: GeneratedModule,
     *,

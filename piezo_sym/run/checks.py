@@ -4,7 +4,9 @@ Input: anything, and the place it was given.  Output: a float, or a vector of fl
 or a `UsageError` that names the place.
 """
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from math import isfinite, nan
 from numbers import Integral, Real
 from typing import TypeAlias
@@ -12,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import UsageError, nearest, quote
+from piezo_sym.errors import PiezoError, UsageError, nearest, quote
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
@@ -121,3 +123,13 @@ def known_keys(
             remedy = f"give it in '{place}'" if place else nearest(str(name), names)
             raise UsageError(what, where, remedy=remedy)
     return dict(given)
+
+
+@contextmanager
+def calling(function: str) -> Iterator[None]:
+    """Let errors of shared checks name the function that was called; also a decorator of it."""
+    try:
+        yield
+    except PiezoError as error:
+        error.where = re.sub(r"^(simulate|operating_point)\.", f"{function}.", error.where)
+        raise

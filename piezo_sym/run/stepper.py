@@ -17,7 +17,7 @@ from typing import Any, NoReturn, final
 import numpy as np
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
-from piezo_sym.run.checks import FloatArray, number, positive, vector, whole
+from piezo_sym.run.checks import FloatArray, calling, number, positive, vector, whole
 from piezo_sym.run.collocation import read_order
 from piezo_sym.run.engine.batch import Stepping
 from piezo_sym.run.engine.engine import engine_of
@@ -82,6 +82,7 @@ class Stepper:
         If an option is wrong, there is no compiler, or the start is outside the domain.
     """
 
+    @calling("Stepper")
     def __init__(
         self,
         module: GeneratedModule,

@@ -175,6 +175,7 @@ class Part:
 
 
 def inputs_of(elements: Iterable[Element]) -> set[str]:
+    """Return the inputs that elements name."""
     return {given for e in elements for _, given in e.named("input")}
 
 

@@ -9,7 +9,6 @@ and sizes first.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -20,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
-from piezo_sym.run.checks import FloatArray, positive
+from piezo_sym.run.checks import FloatArray, calling, positive
 from piezo_sym.run.collocation import METHOD, FixedStep
 from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.method import checked_method, choose_method
@@ -184,7 +183,7 @@ def read_plan(
     `runs` is what `simulate` takes, as `sweep` lists it.
     """
     inputs, duration, rtol, step, order, parameters, initial, method, times = runs
-    with named_sweep():
+    with calling("sweep"):
         named, bound = checked_method(method), read_rtol(rtol)
         fixed, end = read_step(step, order, named, rtol), positive(duration, "sweep.duration")
         only_end = reduce == "last" and times is step is None
@@ -210,16 +209,6 @@ def read_plan(
         how = (chosen.method, bound, fixed, reduce, reduce_by == "run", largest_banks(axes))
         sizes = (together, boxes, chosen.note)
         return Plan(axes, signals.signals, end, *own, samples, *how, *sizes)  # type: ignore[arg-type]  # reduce is checked
-
-
-@contextmanager
-def named_sweep() -> Iterator[None]:
-    """Let errors of shared checks name the function that was called."""
-    try:
-        yield
-    except PiezoError as error:
-        error.where = error.where.replace("simulate.", "sweep.", 1)
-        raise
 
 
 def refuse_sizes(

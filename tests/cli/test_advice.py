@@ -2,7 +2,7 @@
 
 import pytest
 
-from piezo_sym import Stepper, operating_point, simulate
+from piezo_sym import Stepper, linearize, operating_point, simulate
 from piezo_sym.cli import run
 from piezo_sym.errors import PiezoError
 from piezo_sym.expressions.parse import parse_condition, parse_law
@@ -148,3 +148,18 @@ def test_a_run_of_an_edited_spec(spec_file):
     run = simulate(spec_file(), duration=1e-4)
     with pytest.raises(PiezoError, match="what has changed as parameters"):
         simulate(spec_file("value = 3.5e-3", "value = 4e-3"), duration=1e-4, initial=run)
+
+
+@pytest.mark.parametrize(
+    ("call", "place"),
+    [
+        (lambda: Stepper("oscillator", step=1e-3, parameters={"kk": 1}), "Stepper.parameters"),
+        (lambda: Stepper("oscillator", step=1e-3, initial={"kk": 1}), "Stepper.initial"),
+        (lambda: linearize("oscillator", inputs={"kk": 1}), "linearize.inputs"),
+        (lambda: linearize("oscillator", parameters={"kk": 1}), "linearize.parameters"),
+        (lambda: operating_point("oscillator", initial={"kk": 1}), "operating_point.initial"),
+    ],
+)
+def test_a_wrong_argument_is_one_of_what_was_called(call, place):
+    with pytest.raises(PiezoError, match=f"^{place}: unknown name 'kk'"):
+        call()
