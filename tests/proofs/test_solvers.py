@@ -47,7 +47,8 @@ FAULTS = {
     "hangs": "time.sleep(60)",
     "closes its ears": "os.close(0); os.close(1); time.sleep(60)",
 }
-HARD = "x**4*y**2 + x**2*y**4 + z**6 - 3*x**2*y**2*z**2 + 0.001*x*y*z*w**3 + w**6 >= 0"
+#: True, as Motzkin's form is not negative, and beyond what a solver decides.
+HARD = "x**4*y**2 + x**2*y**4 + z**6 - 3*x**2*y**2*z**2 + 0.001*w**2*(x - y)**2*(z - w)**2 >= 0"
 
 
 def claim(text, *given):
@@ -226,7 +227,7 @@ def test_a_word_of_the_solver_is_a_name_like_others(name, word):
 def test_work_is_limited_and_the_limit_is_said():
     answer = solver("z3").ask(claim(HARD))
     assert answer.result == "unknown"
-    assert "resource limit" in answer.reason
+    assert "resource limit" in answer.reason or "took more than 20 s" in answer.reason
 
 
 @pytest.mark.parametrize("name", ["z3", "cvc5"])
