@@ -36,7 +36,7 @@ typedef struct {
     long hysteron_count; /* lanes of hysteron, at least 1; spec: 2 */
 } piezo_stack_parameters;
 
-/* An initializer for parameters: the values of the spec. */
+/* An initializer for parameters: the values of the spec; change a count together with its arrays. */
 #define piezo_stack_DEFAULTS { \
     .M = 0.0035, \
     .k = 500000.0, \

@@ -35,7 +35,7 @@ typedef struct {
     long slips_count; /* lanes of slips, at least 1; spec: 8 */
 } stack_maxwell_parameters;
 
-/* An initializer for parameters: the values of the spec. */
+/* An initializer for parameters: the values of the spec; change a count together with its arrays. */
 #define stack_maxwell_DEFAULTS { \
     .m = 0.02, \
     .d = 100.0, \

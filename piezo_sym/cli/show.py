@@ -118,7 +118,8 @@ def _equations(iphs: IPHS) -> Iterator[str]:
     for k, process in enumerate(system.processes):
         yield from _process(iphs, k, slot_text(process))
     if system.ports:
-        yield from _matrix("g, input map", system.g)
+        direct = "" if system.D.is_zero else "; it depends on u: inputs drive processes, see z"
+        yield from _matrix(f"g, input map{direct}", system.g)
 
 
 def _joined(iphs: IPHS) -> Iterator[str]:
@@ -166,5 +167,7 @@ def _process(iphs: IPHS, k: int, name: str) -> Iterator[str]:
     yield f"\nProcess {name}"
     yield f"  J       {pairs}"
     yield f"  {{S,U}}_J {text(write(system.bracket[k, 0]))}"
+    if system.z[k, 0] != system.bracket[k, 0]:
+        yield f"  z       {text(write(system.z[k, 0]))}, the driving force: with what inputs add"
     yield f"  R       {text(write(system.R[k, 0]))}"
     yield f"  gamma   {text(iphs.reading.gamma(k))}"

@@ -53,9 +53,10 @@ class Process:
     name, bank : the element, and its bank if it stands for one per lane.
     body : the thermal mass it heats.
     J : its skew structure matrix; for a bank that of lane j, ``J.explicit(counts, lane=j)``.
-    bracket : its driving force {S, U}_J.
+    bracket : {S, U}_J, its driving force z where no input drives it directly.
     R : its modulating function W/T, eq. (4).
-    gamma : R over the driving force z: W/(T z); 0/0 at z = 0, where only R is used.
+    gamma : R over the driving force z, which is the bracket and what inputs add to it: W/(T z);
+        0/0 at z = 0, where only R is used.
     """
 
     name: str

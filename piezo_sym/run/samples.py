@@ -246,8 +246,8 @@ def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[fl
 
 
 def _refuse_suffix(name: str, unit: str, ends: Collection[str], where: str) -> None:
-    """Refuse a header that says no unit, but whose name ends in one, as t_ms does."""
-    start, _, end = name.rpartition("_")
+    """Refuse a header that says no unit, but whose name ends in one, as t_ms and t in ms do."""
+    start, _, end = re.sub(r"( in)?\s+", "_", name).rpartition("_")
     if start and not unit and end in ends:
         what = f"{quote(name)} is a name without a unit that ends in one"
         raise UsageError(what, where, remedy=f"write {quote(f'{start} [{end}]')}, or another name")

@@ -125,6 +125,7 @@ def test_a_command_line(refused, spec_file, tmp_path, monkeypatch, words, advice
         ("t,F,F_kN\n0,1,1\n0,2,1\n1,3,1\n", "the first time, 0 s, stands twice"),
         ("t,F [A]\n0,1\n1,3\n", "in A (drive.csv, column 'F'); expected samples in N"),
         ("t_ms,F\n0,1\n1000,3\n", "write 't [ms]', or another name"),
+        ("t in ms,F\n0,1\n1000,3\n", "write 't [ms]', or another name"),
         ("t,F_kN\n0,1\n1,3\n", "write 'F [kN]', or another name"),
         ("t,a,b\n0,1,2\n1,3,4\n", "columns: t, a, b; name one like the input"),
     ],

@@ -12,6 +12,16 @@ def test_the_text_has_the_equations_and_the_matrices(call):
         assert title in lines
 
 
+def test_the_driving_force_that_an_input_adds_to_is_shown(call):
+    """A voltage across a resistor and a capacitor: the bracket is -Q/C alone."""
+    text = call("show", "stack_maxwell").out
+    process = text.partition("Process leads\n")[2].partition("\n\n")[0]
+    assert "{S,U}_J -Q/C\n" in process
+    assert "z       V_in - Q/C," in process
+    assert "g, input map; it depends on u" in text
+    assert "  z  " not in call("show", "piezo_stack").out
+
+
 def test_a_storage_shows_its_states_where_they_are_and_how_they_start(call):
     lines = [" ".join(line.split()) for line in call("show", "gas_piston").out.splitlines()]
     place = next(n for n, line in enumerate(lines) if line.startswith("gas storage "))

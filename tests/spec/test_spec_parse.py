@@ -128,7 +128,7 @@ def test_an_unknown_function_is_answered_with_known_ones(text):
         ("dd*v", "did you mean 'd'?"),
         ("d*i", "'i' has no meaning here; expected the letters v, T"),
         ("d*phi", "'phi' has no meaning here"),
-        ("d*V_in", "unknown name 'V_in'"),
+        ("d*V_in", "'V_in' is an input, and this law sees none"),
         ("d*__debug__", "unknown name '__debug__'"),
         ("i@v", "has '@'"),
     ],

@@ -119,7 +119,8 @@ def _defaults(program: Program, names: Mapping[str, str]) -> Iterator[str]:
         fields += [f".{bank}_count = {count}" for bank, count in program.counts.items()]
         fields += [] if fields else [".none = 0"]
         yield ""
-        yield "/* An initializer for parameters: the values of the spec. */"
+        arrays = "; change a count together with its arrays" if program.counts else ""
+        yield f"/* An initializer for parameters: the values of the spec{arrays}. */"
         yield f"#define {program.name}_DEFAULTS {{ \\"
         yield from (f"    {field}, \\" for field in fields)
         yield "}"

@@ -165,6 +165,11 @@ def _check_words(
             if not element:
                 remedy = _states_of_letter(spec, word, words)
             raise SpecError(f"{quote(word)} has no meaning here", where, expected, remedy)
+        if word in spec.inputs:
+            what = f"{quote(word)} is an input, and this law sees none"
+            raise SpecError(
+                what, where, "parameters", "drive it through a source, or take a parameter"
+            )
         near = nearest(word, [*letters, *words])
         if word in TIME:
             near = "time enters through an input: declare one, and give the run sine(...) for it"
