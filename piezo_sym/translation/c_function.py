@@ -1,6 +1,6 @@
 """A function of printed C, read back: the rows that it writes as values in normal form.
 
-Input: the tokens of a file, at a function.  Output: values by row.  The grammar:
+Input: a function as `c_text` gives it.  Output: values by row.  The grammar, in C:
 
     statement   const double or long NAME = expression;     double NAME [= expression];
                 const double *[restrict] NAME = pointer;    NAME = or += expression;
@@ -14,13 +14,12 @@ of that lane.
 
 import ast
 from collections import ChainMap
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.translation.c_scope import Branch, CVariable, Deferred, Scope, helper_is
-from piezo_sym.translation.c_text import File, Tokens
-from piezo_sym.translation.expressions import WHOLE, refused
+from piezo_sym.translation.c_scope import Branch, CVariable, Deferred, File, Scope, kind_of
+from piezo_sym.translation.expressions import refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import LEAST, Key, Rows
 
@@ -44,9 +43,11 @@ class CFunction:
     places : what is written and not compared, by its place and bank.
     """
 
-    def __init__(self, tokens: Tokens, file: File, *, by_branches: bool = False) -> None:
-        self.tokens, self.file, self.known = tokens, file, file.known
-        self.name, roles = self._head()
+    def __init__(self, node: ast.FunctionDef, file: File, *, by_branches: bool = False) -> None:
+        self.file, self.known = file, file.known
+        prefix = f"{file.known.iphs.model.name}_"
+        self.name = node.name.removeprefix(prefix) if node.name.startswith(prefix) else ""
+        roles = self._roles(node)
         self.switches: dict[Branch, Deferred | Value] = {}
         self.places: list[Branch] = []
         switches = self.switches if by_branches else None
@@ -58,7 +59,7 @@ class CFunction:
         self.written = list[tuple[str, Key, Deferred, bool]]()
         self.loops, self.summed, self.least = 0, dict[str, CVariable | None](), set[Key]()
         self.returned = "out" in roles.values()
-        self._block(self.scope)
+        self._block(self.scope, node.body)
         if not self.returned or self.least - {key for _, key, _, _ in self.written}:
             raise NotShownError(f"{self.name} leaves numbers that were never written")
 
@@ -74,57 +75,56 @@ class CFunction:
                 found[key] = self.rows_of[role].found[key]
         return found
 
-    def _head(self) -> tuple[str, dict[str, str]]:
-        """Take the head: the function's name, and what its arguments are by name."""
-        tokens, prefix = self.tokens, f"{self.file.model}_"
-        kind, word = tokens.one_of("void", "double", "long"), tokens.word()
-        name = word[len(prefix) :] if word.startswith(prefix) else ""
-        words = self.file.signatures.get(name, "").split()
-        roles = {self._argument(word, n): word for n, word in enumerate(words)}
-        tokens.take(")")
-        wanted = "void" if "out" in words else "long" if words == ["p"] else "double"
-        if kind != wanted or len(roles) != len(words) or not words:
-            raise NotShownError(f"a function {word} of such types")
-        return name, roles
-
-    def _argument(self, role: str, n: int) -> str:
-        self.tokens.take("," if n else "(")
-        types = dict.fromkeys(WRITTEN, "double * restrict")
-        types["p"] = f"const {self.file.model}_{self.file.record} * restrict"
-        self.tokens.take(*types.get(role, "const double * restrict").split())
-        return self.tokens.word()
+    def _roles(self, node: ast.FunctionDef) -> dict[str, str]:
+        """Return what the function's arguments are by name."""
+        words, file = self.file.signatures.get(self.name, "").split(), self.file
+        types = dict.fromkeys(WRITTEN, f"{file.number} * restrict")
+        types["p"] = f"const {file.known.iphs.model.name}_{file.record} * restrict"
+        wanted = [types.get(word, f"const {file.number} * restrict") for word in words]
+        kind = "void" if "out" in words else "long" if words == ["p"] else "double"
+        static = "static " if file.number == "real" else ""
+        roles = dict(zip((arg.arg for arg in node.args.args), words, strict=False))
+        found = [kind_of(arg.annotation) for arg in node.args.args]
+        if found != wanted or kind_of(node.returns) != static + kind or not words:
+            raise NotShownError(f"a function {node.name} of such types")
+        return roles
 
     # Statements
 
-    def _block(self, inner: Scope) -> None:
+    def _block(self, inner: Scope, body: Iterable[ast.stmt]) -> None:
         outside, self.scope = self.scope, inner
-        self.tokens.take("{")
-        while not self.tokens.taken("}"):
-            self._statement()
+        for node in body:
+            if self.returned and "out" not in self.scope.roles.values():
+                raise refused(node, "a statement behind a return")
+            self._statement(node)
         self.scope = outside
 
-    def _statement(self) -> None:
-        tokens = self.tokens
-        if tokens.peek() == "{":
-            self._block(self.scope.block())
-        elif tokens.taken("#pragma"):
-            self._loop(tokens.sums[tokens.at - 1])
-        elif tokens.peek() == "for":
-            self._loop(None)
-        elif tokens.taken("return"):
-            self._return(tokens.expression())
-        elif tokens.taken("("):  # (void)u;
-            tokens.take("void", ")")
-            tokens.one_of(*self.scope.roles)
-            tokens.take(";")
-        elif tokens.peek() in {"const", "static", "double"}:
-            self._declaration()
-        else:
-            self._change()
+    def _statement(self, node: ast.stmt) -> None:
+        match node:
+            case ast.AnnAssign(ast.Name(name), kind, value):
+                self._declare(name, kind_of(kind), value)
+            case ast.Assign([ast.Subscript(ast.Name(array), place)], value):
+                self._change(array, place, value, added=False)
+            case ast.AugAssign(ast.Subscript(ast.Name(array), place), ast.Add(), value):
+                self._change(array, place, value, added=True)
+            case ast.Assign([ast.Name(name)], value):
+                self._set(name, value)
+            case ast.AugAssign(ast.Name(name), ast.Add(), value):
+                self._add(name, value)
+            case ast.For(ast.Name(name), ast.Call(ast.Name(word), [size, *sums]), body):
+                names = [*map(ast.unparse, sums)]
+                self._loop(name, size, body, set(names) if word == "simd" else None)
+            case ast.With(body=body):
+                self._block(self.scope.block(), body)
+            case ast.Return(ast.expr() as value):
+                self._return(value)
+            case ast.Pass() | ast.Expr(ast.Name()):
+                pass
+            case _:
+                raise refused(node, "a statement")
 
     def _return(self, node: ast.expr) -> None:
-        self.tokens.take(";")
-        if self.tokens.peek() != "}" or self.returned or self.scope.lanes:
+        if self.returned or self.scope.lanes:
             raise refused(node, "a return")
         self.returned = True
         if self.rows_of["out"].slots == (Slot(""),):
@@ -134,68 +134,43 @@ class CFunction:
         if self.scope.read.whole(node) != counted.places[-1]:
             raise refused(node, "another number of rows")
 
-    def _declaration(self) -> None:
-        tokens, scope = self.tokens, self.scope
-        fixed, constant = tokens.taken("static"), tokens.taken("const")
-        kind, pointer = tokens.one_of("double", "long"), tokens.taken("*")
-        _ = pointer and tokens.taken("restrict")
-        name = tokens.word()
-        if constant and not pointer and tokens.taken("["):
-            scope.declare(name, self._list())
-        elif fixed or (not constant and (kind == "long" or pointer)):
-            raise NotShownError(f"the declaration of {name}")
-        elif not constant and tokens.peek() == ";":
-            scope.declare(name, CVariable(None, scope.lanes))
+    def _declare(self, name: str, kind: str, value: ast.expr | None) -> None:
+        scope, number = self.scope, self.file.number
+        pointer = f"const {number} *"
+        kinds = {f"const {number}": "number", "const long": "index"}
+        kinds |= {pointer: "pointer", f"{pointer} restrict": "pointer"}
+        if kind == number:
+            start = self._kept(value) if value else None
+            scope.declare(name, CVariable(start, scope.lanes))
+        elif isinstance(value, ast.List):
+            if kind.removeprefix("static ") != f"const {number} [ {len(value.elts)} ]":
+                raise NotShownError("a list of another length")
+            scope.declare(name, [self._kept(part) for part in value.elts])
+        elif kind in kinds and value:
+            meaning = scope.meaning(kinds[kind], value)
+            self.constants += [meaning] if isinstance(meaning, Deferred) else []
+            scope.declare(name, meaning)
         else:
-            tokens.take("=")
-            node = tokens.expression()
-            if pointer and kind == "double":
-                scope.declare(name, scope.pointer(node))
-            elif kind == "long" and not pointer:
-                scope.declare(name, (scope.read.whole(node), WHOLE))
-            elif constant and (branch := scope.shared_branch(node)):
-                scope.declare(name, branch)
-            else:
-                part = self._kept(node)
-                scope.declare(name, part if constant else CVariable(part, scope.lanes))
-        tokens.take(";")
+            raise NotShownError(f"the declaration of {name}")
 
-    def _list(self) -> list[Deferred]:
-        tokens, values = self.tokens, list[Deferred]()
-        size = tokens.next()
-        tokens.take("]", "=", "{")
-        while not tokens.taken("}"):
-            values.append(self._kept(tokens.expression()))
-            tokens.take(",")
-        if size != str(len(values)):
-            raise NotShownError("a list of another length")
-        return values
-
-    def _loop(self, pragma: frozenset[str] | None) -> None:
-        tokens, rows = self.tokens, self.rows_of["out"]
-        tokens.take("for", "(", "long")
-        name = tokens.word()
-        tokens.take("=", "0", ";", name, "<")
-        node = tokens.expression()
-        tokens.take(";", "++", name, ")")
-        size, square = self.scope.read.whole(node), rows.size * rows.size
+    def _loop(
+        self, name: str, size: ast.expr, body: list[ast.stmt], named: set[str] | None
+    ) -> None:
+        rows, lanes = self.rows_of["out"], self.scope.read.whole(size)
         first = not self.written and not self.scope.lanes
-        if self.name == "jacobian" and size == square and first:
+        if self.name == "jacobian" and lanes == rows.size * rows.size and first:
             out = next(name for name, role in self.scope.roles.items() if role == "out")
-            tokens.take("{", out, "[", name, "]", "=", "0.0", ";", "}")
+            if [ast.unparse(part) for part in body] != [f"{out}[{name}] = 0.0"] or named:
+                raise refused(size, "a loop over no bank")
             rows.zeros = True
             return
         banks = self.known.bank_of_size
-        if size not in banks or len(self.scope.lanes) > 1:
-            raise refused(node, "a loop over no bank")
-        self._lanes(name, banks[size], pragma)
-
-    def _lanes(self, name: str, bank: str, pragma: frozenset[str] | None) -> None:
-        """Read a loop over the lanes of a bank."""
+        if lanes not in banks or len(self.scope.lanes) > 1:
+            raise refused(size, "a loop over no bank")
         outside, self.loops = self.summed, self.loops + 1
         number, self.summed = self.loops, {}
-        self._block(self.scope.of_lanes(name, bank))
-        if pragma is not None and (pragma != self.summed.keys() or self.loops != number):
+        self._block(self.scope.of_lanes(name, banks[lanes]), body)
+        if named is not None and (named != self.summed.keys() or self.loops != number):
             raise NotShownError("a directive that names other sums than its loop has")
         for added in filter(None, self.summed.values()):
             added.is_open = False
@@ -203,51 +178,34 @@ class CFunction:
 
     # Changes
 
-    def _change(self) -> None:
-        tokens, place = self.tokens, None
-        name = tokens.word()
-        if tokens.taken("["):
-            place = tokens.expression()
-            tokens.take("]")
-        added = tokens.one_of("=", "+=") == "+="
-        node = tokens.expression()
-        tokens.take(";")
-        found, role = self.scope.names.get(name), self.scope.roles.get(name, "")
-        if place is not None and role == "s" and not added:
-            self._switch(self.scope.read.whole(place), node)
-        elif place is not None and role in self.rows_of:
-            self._write(role, place, node, added=added)
-        elif place is not None or not isinstance(found, CVariable):
-            raise NotShownError(f"{name} is changed")
-        elif added:
-            self._add(name, found, node)
-        elif found.start is None and found.lanes == self.scope.lanes:
-            found.start = self._kept(node)
-        else:
-            raise NotShownError(f"{name} is changed where it should not be")
-
     def _kept(self, node: ast.expr) -> Deferred:
         """Return what a variable or constant is set to; it is read even if nothing needs it."""
         self.constants.append(self.scope.defer(node))
         return self.constants[-1]
 
-    def _add(self, name: str, found: CVariable, node: ast.expr) -> None:
+    def _set(self, name: str, node: ast.expr) -> None:
+        found = self.scope.names.get(name)
+        if not isinstance(found, CVariable) or found.start or found.lanes != self.scope.lanes:
+            raise NotShownError(f"{name} is changed where it should not be")
+        found.start = self._kept(node)
+
+    def _add(self, name: str, node: ast.expr) -> None:
         """Read what a loop adds to a sum over lanes."""
-        part, banks = self._kept(node), self.scope.banks
-        if len(banks) != 1 or found.lanes or found.is_read or found.start is None:
+        part, banks, found = self._kept(node), self.scope.banks, self.scope.names.get(name)
+        sums = isinstance(found, CVariable) and found.start and not found.lanes
+        if not isinstance(found, CVariable) or not sums or len(banks) != 1 or found.is_read:
             raise refused(node, "a sum that is changed where it should not be, or read in its loop")
         found.is_open, self.summed[name] = True, found
         found.parts.append((part, banks[0]))
 
-    def _switch(self, place: Value, node: ast.expr) -> None:
-        """Read a switching function, of each lane in a loop."""
-        branch = self.scope.branch(place)
-        if branch in self.switches or len(self.scope.lanes) > 1:
-            raise refused(node, "a switching function that is not written once")
-        self.switches[branch] = self._kept(node)
-
-    def _write(self, role: str, place: ast.expr, node: ast.expr, *, added: bool) -> None:
-        rows, at = self.rows_of[role], self.scope.read.whole(place)
+    def _change(self, array: str, place: ast.expr, node: ast.expr, *, added: bool) -> None:
+        role, at = self.scope.roles.get(array, ""), self.scope.read.whole(place)
+        if role == "s" and not added:
+            self._switch(at, node)
+            return
+        if role not in self.rows_of:
+            raise NotShownError(f"{array} is changed")
+        rows = self.rows_of[role]
         if rows.name == NOT_COMPARED:
             self.places.append(self.scope.branch(at))
             self.scope.defer(node)
@@ -262,6 +220,13 @@ class CFunction:
             self.written.append((role, (*key, lane), part, False))
         if not listed:
             self.written.append((role, key, self.scope.defer(node), added))
+
+    def _switch(self, place: Value, node: ast.expr) -> None:
+        """Read a switching function, of each lane in a loop."""
+        branch = self.scope.branch(place)
+        if branch in self.switches or len(self.scope.lanes) > 1:
+            raise refused(node, "a switching function that is not written once")
+        self.switches[branch] = self._kept(node)
 
     def _listed(self, node: ast.expr) -> list[Deferred]:
         """Return what ``j < n ? listed[j] : (double)NAN`` lists, n the list's length."""
@@ -280,15 +245,19 @@ class CFunction:
         """Read the least value over the lanes: ``out[n] = HUGE_VAL``, then ``min(out[n], ...)``."""
         n = int(at.constant) if at.constant is not None else -1
         key, scope = ("margins", n, LEAST), self.scope
+        most, least = (
+            ("wide(HUGE_VAL)", "least") if self.file.number == "real" else ("HUGE_VAL", "min")
+        )
+        if ast.unparse(node) == most and not scope.lanes and key not in self.least:
+            self.least.add(key)
+            return True
         match node:
-            case ast.Name("HUGE_VAL") if not scope.lanes and key not in self.least:
-                self.least.add(key)
-                return True
-            case ast.Call(ast.Name("min"), [ast.Subscript(ast.Name(name)) as first, value]):
-                own = scope.roles.get(name) == role and key in self.least
+            case ast.Call(ast.Name(word), [ast.Subscript(ast.Name(name)) as first, value]):
+                own = scope.roles.get(name) == role and key in self.least and word == least
                 own = own and ast.unparse(first) == f"{name}[{ast.unparse(place)}]"
                 lesser = lambda a, b: scope.read.apply("minimum", [a, b])  # noqa: E731
-                if own and scope.lanes and helper_is(self.file, "min", lesser, 2):
+                known = word == "least" or self.file.helper_is("min", lesser, 2)
+                if own and scope.lanes and known:
                     self.summed["the least"] = None
                     self.written.append((role, key, scope.defer(value), False))
                     return True

@@ -9,13 +9,14 @@ Output: values by function and row.  The grammar:
 and for the rest see `c_function`.  Helpers mean what their text says.  Nothing is compiled.
 """
 
+import ast
 import re
-from collections import ChainMap
 
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.c_function import CFunction
-from piezo_sym.translation.c_scope import Meaning, Scope
-from piezo_sym.translation.c_text import CALLS, File, Helper, Tokens
-from piezo_sym.translation.expressions import PLAIN
+from piezo_sym.translation.c_scope import File, kind_of
+from piezo_sym.translation.c_text import python_of
+from piezo_sym.translation.expressions import refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.signs import reading
@@ -25,18 +26,21 @@ SIGNATURES = dict.fromkeys([*_STATE, "heat", "entropy_production"], "x u p out")
 SIGNATURES |= {"initial_state": "u p out", "temperatures": "x p out"}
 SIGNATURES |= {"energy": "x p", "entropy": "x p", "states": "p", "processes": "p"}
 _HELPERS = r"pick|sign|min|max|saturate|deadzone|power_[2-8]"
+CALLS = {record.in_c: name for name, record in RECORDS.items() if record.smooth}
+CALLS |= {"pow": "pow", "fabs": "abs", "copysign": "copysign"}
 
 
 def read_c(text: str, known: Proved) -> dict[Key, Value]:
     """Return every row that the functions of a C file write."""
-    name = known.iphs.model.name
-    tokens, file = Tokens(text, name), File(known, name, SIGNATURES, "parameters", CALLS)
+    file = File(known, "double", "parameters", SIGNATURES, CALLS)
     rows, seen = dict[Key, Value](), set[str]()
-    while tokens.peek():
-        if tokens.taken("static"):
-            add_helper(tokens, file, _HELPERS)
+    for node in python_of(text, known.iphs.model.name).body:
+        if not isinstance(node, ast.FunctionDef):
+            raise refused(node, "a table")
+        if kind_of(node.returns) == "static double":
+            add_helper(node, file, _HELPERS)
             continue
-        function = CFunction(tokens, file)
+        function = CFunction(node, file)
         if function.name in seen:
             raise NotShownError(f"{function.name} is defined twice")
         seen.add(function.name)
@@ -47,20 +51,14 @@ def read_c(text: str, known: Proved) -> dict[Key, Value]:
     return rows
 
 
-def add_helper(tokens: Tokens, file: File, allowed: str) -> str:
-    """Take a function of the file's own, one of those allowed; return its name."""
-    tokens.take("double")
-    name, parameters = tokens.word(), dict[str, str]()
-    tokens.take("(")
-    while not parameters or tokens.taken(","):
-        kind = tokens.one_of("double", "int")
-        parameters[tokens.word()] = kind
-    tokens.take(")", "{", "return")
-    names: ChainMap[str, Meaning] = ChainMap({})
-    names |= dict.fromkeys(parameters, (file.known.field.zero, PLAIN))
-    value = Scope(file, {}, names).defer(tokens.expression()).node
-    tokens.take(";", "}")
-    if name in file.helpers or name in CALLS or not re.fullmatch(allowed, name):
-        raise NotShownError(f"a function {name} of the C file's own")
-    file.helpers[name] = Helper(tuple(parameters.items()), value)
-    return name
+def add_helper(node: ast.FunctionDef, file: File, allowed: str) -> None:
+    """Take a function of the file's own, one of those allowed."""
+    known = node.name in file.helpers or node.name in file.calls
+    kinds = {kind_of(arg.annotation) for arg in node.args.args}
+    if known or not re.fullmatch(allowed, node.name) or not kinds <= {file.number, "int"}:
+        raise NotShownError(f"a function {node.name} of the C file's own")
+    match node.body:
+        case [ast.Return(ast.expr())]:
+            file.helpers[node.name] = node
+        case _:
+            raise NotShownError(f"{node.name} is more than an expression")

@@ -14,12 +14,57 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import final
 
-from piezo_sym.translation.c_text import COMPARISONS, File, Helper
 from piezo_sym.translation.change import moved
-from piezo_sym.translation.expressions import PLAIN, TEST, WHOLE, Expressions, Read, refused
+from piezo_sym.translation.expressions import (
+    PLAIN,
+    TEST,
+    WHOLE,
+    Expressions,
+    Read,
+    Shape,
+    refused,
+)
 from piezo_sym.translation.field import NotShownError, Value
+from piezo_sym.translation.known import Proved
 from piezo_sym.translation.signs import compare, on_path
 from piezo_sym.translation.zero import is_zero
+
+#: What the step's own words for comparisons stand for.
+COMPARISONS: dict[str, ast.cmpop] = {"is_above": ast.Gt(), "is_at_least": ast.GtE()}
+_WORDS = {"chosen", "wide", *COMPARISONS}
+
+
+@final
+@dataclass(frozen=True)
+class File:
+    """What the functions of a C file have in common.
+
+    Attributes
+    ----------
+    number : the type of its numbers.
+    record : the type that holds parameters.
+    signatures : of each function, what its arguments are.
+    calls : the functions of the library that may be called, and what they are.
+    results : of a function and an argument, which rows are written to it; else the function's.
+    helpers : functions of the file's own.
+    """
+
+    known: Proved
+    number: str
+    record: str
+    signatures: Mapping[str, str]
+    calls: Mapping[str, str]
+    results: Mapping[str, str] = field(default_factory=dict)
+    helpers: dict[str, ast.FunctionDef] = field(default_factory=dict)
+
+    def helper_is(self, name: str, function: Callable[..., Value], count: int) -> bool:
+        """Return whether a function of the file's own is a given one, of so many numbers."""
+        if name not in self.helpers:
+            return False
+        args = [self.known.field.name(f"{n} of {name}") for n in range(count)]
+        names = {f"a{n}": (arg, PLAIN) for n, arg in enumerate(args)}
+        call = ast.Call(ast.Name(name), [ast.Name(arg) for arg in names], [])
+        return is_zero(Scope(self, {}, ChainMap({**names})).read(call)[0] - function(*args))
 
 
 @final
@@ -77,19 +122,12 @@ class CVariable:
         return field.total((self.start.value, *sums))
 
 
-@final
-@dataclass(frozen=True)
-class BranchReference:
-    """A branch, or a pointer to one per lane of the bank in whose loop it is read."""
-
-    place: Value
-    shared: bool
-
-
 #: The place of a branch, of the first lane where it has some, and the bank of these.
 Branch = tuple[Value, str | None]
-#: A `Value` is a pointer to the numbers of lanes, as that of lane 0; a list is an array.
-Meaning = Read | Deferred | CVariable | Value | list[Deferred] | BranchReference
+#: A place among the branches: of one, or (True) of a pointer to one per lane.
+Place = tuple[bool, Value]
+#: Of a `Read`, lanes are behind a pointer; a list is an array.
+Meaning = Read | Deferred | CVariable | Place | list[Deferred]
 
 
 @final
@@ -126,7 +164,7 @@ class Scope:
 
     def declare(self, name: str, meaning: Meaning) -> None:
         """Give a new name a meaning."""
-        taken = (self.names, self.roles, self.file.helpers, self.file.calls)
+        taken = (self.names, self.roles, self.file.helpers, self.file.calls, _WORDS, {"zero"})
         if any(name in table for table in taken):
             raise NotShownError(f"{name} is declared twice")
         self.names[name] = meaning
@@ -143,15 +181,15 @@ class Scope:
 
     def defer(self, node: ast.expr) -> Deferred:
         """Return an expression that is written here; refuse names that stand for nothing yet."""
-        callable_ = (self.file.calls, self.file.helpers, {"chosen"}, COMPARISONS)
         parts = list(ast.walk(node))
         functions = [part.func for part in parts if isinstance(part, ast.Call)]
-        if not all(any(ast.unparse(f) in table for table in callable_) for f in functions):
+        callable_ = {*self.file.calls, *self.file.helpers, *_WORDS}
+        if not callable_.issuperset(map(ast.unparse, functions)):
             raise refused(node, "a call")
         for part in parts:
             if isinstance(part, ast.Name) and part not in functions:
                 found = self.names.get(part.id)
-                if found is None and part.id not in {*self.roles, "NAN"}:
+                if found is None and part.id not in {*self.roles, "NAN", "zero"}:
                     raise refused(part, "a name")
                 if isinstance(found, CVariable):
                     if found.is_open or found.start is None:
@@ -161,43 +199,51 @@ class Scope:
 
     # Meanings
 
-    def pointer(self, node: ast.expr) -> Value | BranchReference:
-        """Return what a pointer to the lanes of a parameter or a part of an array points to."""
+    def meaning(self, kind: str, node: ast.expr) -> Meaning:
+        """Return what a constant of some kind is: a number, an index, a pointer."""
         known = self.file.known
-        match node:
-            case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
-                name = name.rstrip("_")
-                if name in known.iphs.model.parameters and name in known.banks:
-                    return known.names[name]
-            case ast.BinOp(left, ast.Add(), right):
-                while isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add):
-                    right = ast.BinOp(left.right, ast.Add(), right)
-                    left = left.left
-                role = self.roles.get(left.id, "") if isinstance(left, ast.Name) else ""
-                if role == "b":
-                    return BranchReference(self.read.whole(right), shared=False)
-                if role in {"x", "g"}:
-                    return known.part(role, self.read.whole(right), bank=True)
-        raise refused(node, "a pointer")
+        match kind, node:
+            case "index", _:
+                return self.read.whole(node), WHOLE
+            case _, ast.Subscript(ast.Name(b), place) if self.roles.get(b) == "b":
+                return kind == "pointer", self.read.whole(place)
+            case "number", _:
+                return self.defer(node)
+            case _, ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "g"}:
+                value = known.part(self.roles[x], self.read.whole(place), bank=True)
+            case _, ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
+                if name.rstrip("_") not in known.iphs.model.parameters:
+                    raise refused(node, "a pointer")
+                value = known.names[name.rstrip("_")]
+            case _:
+                raise refused(node, "a pointer")
+        banks = [bank for bank, _ in value.lanes]
+        if not banks:
+            raise refused(node, "a pointer")
+        return value, Shape("lanes", banks[0])
 
     def _leaf(self, node: ast.expr) -> Read:
-        known = self.file.known
+        known, names, real = self.file.known, self.names, self.file.number == "real"
         match node:
-            case ast.Name(name) if name in self.names:
-                return self._named(self.names[name], node)
+            case ast.Name(name) if name in names:
+                return self._named(names[name], node)
+            case ast.Name("zero") if real:
+                return known.field.zero, PLAIN
             case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
                 value, whole = known.parameter(name.rstrip("_"))  # names of a spec have none
                 return value, WHOLE if whole else PLAIN
             case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u", "g"}:
                 return known.part(self.roles[x], self.read.whole(place), bank=False), PLAIN
             case ast.Subscript(ast.Name(array), ast.Name(j)):
-                found = self.names.get(array)
                 for lane, (loop, bank) in enumerate(self.lanes):
-                    if isinstance(found, Value) and loop == j and found.lanes == {(bank, 0)}:
-                        return moved(found, bank, 1) if lane else found, PLAIN
+                    match names.get(array):
+                        case (Value() as value, Shape("lanes", own)) if (loop, bank) == (j, own):
+                            return moved(value, bank, 1) if lane else value, PLAIN
+            case ast.Call(ast.Name("wide"), [arg], []) if real:
+                return self.read.any(arg)
             case ast.Call(
                 ast.Name("chosen"), [ast.Call(ast.Name(word), sides, []), then, other], []
-            ) if word in COMPARISONS and len(sides) == 2:
+            ) if real and word in COMPARISONS and len(sides) == 2:
                 condition = ast.Compare(sides[0], [COMPARISONS[word]], [sides[1]])
                 if self.switches is None:
                     return self.read.choice(condition, then, other)
@@ -213,26 +259,23 @@ class Scope:
                 return value if found.kind else self.file.known.field.letter(value), shape
             case CVariable():
                 return found.value, PLAIN
-            case tuple():
-                return found
+            case (Value() as value, Shape(bank="") as shape):
+                return value, shape
         raise refused(node, "an array as a number")
 
-    def _inlined(self, helper: Helper, args: list[ast.expr], node: ast.expr) -> Value:
+    def _inlined(self, helper: ast.FunctionDef, args: list[ast.expr], node: ast.expr) -> Value:
         """Return what a helper gives for some arguments."""
-        if len(args) != len(helper.parameters):
+        if len(args) != len(helper.args.args):
             raise refused(node, "a call with other arguments")
-        given = zip(helper.parameters, args, strict=True)
-        names = {name: Deferred(arg, self, kind) for (name, kind), arg in given}
-        return Scope(self.file, {}, ChainMap({**names})).read(helper.value)[0]
+        names = ChainMap[str, Meaning]()
+        for own, arg in zip(helper.args.args, args, strict=True):
+            names[own.arg] = Deferred(arg, self, kind_of(own.annotation))
+        (returned,) = helper.body
+        assert isinstance(returned, ast.Return)
+        assert returned.value is not None
+        return Scope(self.file, {}, names).read(returned.value)[0]
 
     # Branches
-
-    def shared_branch(self, node: ast.expr) -> BranchReference | None:
-        """Return the branch that ``b[place]`` is, if an expression is that."""
-        match node:
-            case ast.Subscript(ast.Name(b), place) if self.roles.get(b) == "b":
-                return BranchReference(self.read.whole(place), shared=True)
-        return None
 
     def branch(self, place: Value) -> Branch:
         """Return what branch stands at a place, of each lane in a loop."""
@@ -250,10 +293,11 @@ class Scope:
                 ast.Subscript(ast.Name(array), ast.Name(j)), [ast.Gt()], [ast.Constant(0.0)]
             ) if [j] == [loop for loop, _ in self.lanes]:
                 name, bank = array, self.banks[0]
-        found = self.names.get(name)
-        if not isinstance(found, BranchReference) or found.shared != (bank is None):
-            raise refused(condition, "a choice by something else than a branch")
-        branch = found.place, bank
+        match self.names.get(name):
+            case (bool() as pointer, Value() as place) if pointer == (bank is not None):
+                branch = place, bank
+            case _:
+                raise refused(condition, "a choice by something else than a branch")
         switch = switches.pop(branch, None)  # while it is read, it is nobody's branch
         if switch is None:
             raise refused(condition, "a branch of no switching function, or of its own")
@@ -263,11 +307,6 @@ class Scope:
         return switch
 
 
-def helper_is(file: File, helper: str, function: Callable[..., Value], count: int) -> bool:
-    """Return whether a function of the file's own is a given one, of so many numbers."""
-    if helper not in file.helpers:
-        return False
-    args = [file.known.field.name(f"{n} of {helper}") for n in range(count)]
-    names = {f"a{n}": (arg, PLAIN) for n, arg in enumerate(args)}
-    call = ast.Call(ast.Name(helper), [ast.Name(name) for name in names], [])
-    return is_zero(Scope(file, {}, ChainMap({**names})).read(call)[0] - function(*args))
+def kind_of(annotation: ast.expr | None) -> str:
+    """Return a type, as `c_text` writes it."""
+    return str(annotation.value) if isinstance(annotation, ast.Constant) else ""

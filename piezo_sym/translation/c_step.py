@@ -3,50 +3,45 @@
 Input: the text of ``<model>_step.c``, and the proved stage, for names and places.  Output: values
 by function and row.  The grammar:
 
-    file        comments, the two headers, MACROS, record, functions, enumerations, tables
-    record      typedef struct { real NAME; real *NAME; long NAME; } <model>_reals;
-    function    static void <model>_{integrands, stage, slopes, sizes}(...), see `c_function`;
-                place_reals and give, which handle the record, word for word
+    file        comments, the two headers, MACROS, DATA, functions, enumerations, tables
+    function    static void <model>_{integrands, stage, slopes, sizes}(...), see `c_function`
     helper      static inline real power_N_of(real z) { return expression; }
     table       enum { NAME = n, ... };    static const int NAME[] = { n, ... };
 
-MACROS say what a word means where ``real`` is one number.  A mean that a stage is given is that of
-its integrand: a co-state and what is free of the state.  A branch is 1 where its switching function
-is positive, else 0; a stage chooses by branches alone: ``chosen(NAME > 0.0, value, value)``.
-`slopes` and most tables behind it serve Newton's method alone, and `bends`, which a line ``#define
-BENDS`` announces, says where the engine splits means: of them nothing is said, but that they are in
-the grammar, and that what they write fills its array.  Where the system has stops, a table tells of
-each the bank, whether its lanes have drives of their own, and its inner state; `path_parameters`
-are stiffness and limit of the inner state, `drives` the rates of coordinates.
+MACROS say what a word means where ``real`` is one number; DATA are the record of parameters and
+what handles it, word for word.  A mean that a stage is given is that of its integrand: a co-state
+and what is free of the state.  A branch is 1 where its switching function is positive, else 0; a
+stage chooses by branches alone: ``chosen(NAME > 0.0, value, value)``.  `slopes` and most tables
+behind it serve Newton's method alone, and `bends`, which a line ``#define BENDS`` announces, says
+where the engine splits means: of them nothing is said, but that they are in the grammar, and that
+what they write fills its array.  Where the system has stops, a table tells of each the bank,
+whether its lanes have drives of their own, and its inner state; `path_parameters` are stiffness and
+limit of the inner state, `drives` the rates of coordinates.
 """
 
 import ast
+import re
 from collections import ChainMap
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from typing import final
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.spec.elements.ports import Body, Storage
-from piezo_sym.translation.c_data import (
-    Tables,
-    strict,
-    take_enumeration,
-    take_give,
-    take_place,
-    take_record,
-    take_table,
-)
+from piezo_sym.spec.model import Model
+from piezo_sym.spec.tables import banks, lane_parameters
 from piezo_sym.translation.c_function import NOT_COMPARED, CFunction
 from piezo_sym.translation.c_reader import add_helper
-from piezo_sym.translation.c_scope import Branch, Scope, helper_is
-from piezo_sym.translation.c_text import CALLS, File, Helper, Tokens
+from piezo_sym.translation.c_scope import Branch, File, Scope, kind_of
+from piezo_sym.translation.c_text import python_of
 from piezo_sym.translation.change import put, spelled
-from piezo_sym.translation.expressions import WHOLE
+from piezo_sym.translation.expressions import refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.signs import reading
 
-_LIBRARY = tuple(record.in_c for record in RECORDS.values() if record.smooth)
+_LIBRARY = {record.in_c: name for name, record in RECORDS.items() if record.smooth}
 #: What the words of a step stand for, for numbers of one run; called functions have a line.
 MACROS = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
@@ -65,10 +60,22 @@ typedef REAL real;
 #define OF(value, lane) (value)
 #endif
 """
-#: A choice is made by a branch alone: what stands for ``?`` is no word of C.
-_SPELLED = {"real": "double", "zero": "0.0", "wide": "", "least": "min", "?": "no choice"}
-_SPELLED |= {f"power_{n}_of": f"power_{n}" for n in range(2, 9)}
-_LEAST = ast.parse("a if a < b or a != a else b", mode="eval").body
+DATA = """\
+typedef struct {{
+{fields}}} {model}_reals;
+--
+static long {model}_place_reals({model}_reals *to, const {model}_parameters *from, real *at)
+{{
+{unused}    real *const begin = at;
+{places}    return at - begin;
+}}
+--
+static void {model}_give({model}_reals *to, const {model}_parameters *from, int lane)
+{{
+    (void)lane;
+{given}}}
+"""
+BENDS = "#define BENDS\n"
 _SIGNATURES = {
     "integrands": "x p out",
     "stage": "x g b u p out rows s m",
@@ -90,101 +97,133 @@ def read_step(text: str, known: Proved) -> dict[Key, Value]:
     """
     lines = {f"#define {name}_of {name}\n": name for name in _LIBRARY}
     lines = {line: name for line, name in lines.items() if line in text}
-    spelled = _SPELLED | {f"{name}_of": name for name in lines.values()}
     macros = MACROS.replace("{functions}", "".join(lines))
-    table = _path_table(known)
-    return _Step(Tokens(text, known.iphs.model.name, macros, spelled, table), known).rows()
+    bends = BENDS in text
+    parts = [*_data(text, known.iphs.model), *_path_table(known), *([BENDS] if bends else [])]
+    module = python_of(text, known.iphs.model.name, macros, parts)
+    calls = {f"{name}_of": _LIBRARY[name] for name in lines.values()}
+    file = File(known, "real", "reals", _SIGNATURES, calls, _RESULTS)
+    return _Step(module, file).rows(bends=bends)
 
 
-def _path_table(known: Proved) -> str:
-    """Return the lines by which a step tells of its stops, if the system has some."""
-    banks = [*known.sizes]
+def _data(text: str, model: Model) -> list[str]:
+    """Return the record of parameters and what fills it, with the names that the text has."""
+    own, counts = lane_parameters(model), {f"{bank}_count": "" for bank in banks(model)}
+    fields, places, given = "", "", ""
+    for count in counts:
+        places += f"    to->{count} = from->{count};\n"
+    for spec in model.parameters:
+        name = next(iter(re.findall(rf"^    real \*?({spec}_*);$", text, re.M)), spec)
+        size, place = f"{own.get(spec)}_count", "[j]" if spec in own else ""
+        fields += f"    real {'*' if spec in own else ''}{name};\n"
+        if spec in own:
+            places += f"    to->{name} = at;\n    at += from->{size};\n"
+            given += f"    for (long j = 0; j < from->{size}; ++j)\n    "
+        given += f"    OF(to->{name}{place}, lane) = from->{name}{place};\n"
+    fields += "".join(f"    long {count};\n" for count in counts)
+    unused = "    (void)to;\n    (void)from;\n"
+    words = {"fields": fields or "    char none;\n", "places": places, "given": given or unused}
+    words["unused"] = "" if counts else unused
+    return DATA.format(model=model.name, **words).split("--\n")
+
+
+def _path_table(known: Proved) -> Iterator[str]:
+    """Yield the lines by which a step tells of its stops, if the system has some."""
+    banks, name = [*known.sizes], known.iphs.model.name
     states = [slot.label for slot in known.iphs.system.states]
     lines = [
         f"    {{{banks.index(bank) if bank else -1}, {int(own)}, {states.index(inner)}}},\n"
         for inner, bank, own in known.paths
     ]
-    name = known.iphs.model.name
-    # no comment is open where one ends
-    comment = "/* Path functionals: bank or -1, whether each lane has a drive, inner state. */\n"
-    head = f"{comment}#define PATHS {len(lines)}\nstatic const int {name}_path[PATHS][3] = {{\n"
-    return f"{head}{''.join(lines)}}};\n" if lines else ""
+    if lines:
+        head = f"#define PATHS {len(lines)}\nstatic const int {name}_path[PATHS][3] = {{\n"
+        yield f"{head}{''.join(lines)}}};\n"
 
 
 @final
 class _Step:
-    """Reads a file, part by part."""
+    """Reads a file: `functions` and `tables`, by their names without the model's."""
 
-    def __init__(self, tokens: Tokens, known: Proved) -> None:
-        self.tokens, self.iphs, self.field = tokens, known.iphs, known.field
-        calls = {name: CALLS[name] for name in _LIBRARY}
-        self.file = File(known, self.iphs.model.name, _SIGNATURES, "reals", calls, _RESULTS)
-        self.file.helpers["min"] = Helper((("a", "double"), ("b", "double")), _LEAST)
-        self.branches, self.slopes, self.bends = list[Branch](), list[Branch](), list[Branch]()
-        self.found: dict[Key, Value] = {}
+    def __init__(self, module: ast.Module, file: File) -> None:
+        self.file, self.iphs, self.field = file, file.known.iphs, file.known.field
+        self.functions: dict[str, ast.FunctionDef] = {}
+        self.tables: dict[str, list[int]] = {}
+        for node in module.body:
+            match node:
+                case ast.FunctionDef() if kind_of(node.returns) == "static inline real":
+                    self._power(node)
+                case ast.FunctionDef(name):
+                    self.functions[self._own(name)] = node
+                case ast.Assign([ast.Name(name)], number):
+                    self.tables[self._own(name)] = [_number(number)]
+                case ast.AnnAssign(
+                    ast.Name(name), ast.Constant("static const int [ ]"), ast.List(numbers)
+                ):
+                    self.tables[self._own(name)] = [*map(_number, numbers)]
+                case _:
+                    raise refused(node, "a part of a step")
 
-    def rows(self) -> dict[Key, Value]:
-        """Return what is written."""
-        tokens, model, tables = self.tokens, self.iphs.model, Tables()
-        fields = take_record(tokens, model)
-        parts = [self._integrands, *([self._bends] * tokens.bends), self._stage]
-        parts += [self._slopes, self._sizes]
-        parts += [self._path_parameters, self._drives] * bool(self.file.known.paths)
-        parts += [lambda: take_place(tokens, model, fields)]
-        parts += [lambda: take_give(tokens, model, fields)]
-        while tokens.peek():
-            more = Tables()
-            word = tokens.one_of("enum", "static")
-            if word == "enum":
-                more = take_enumeration(tokens)
-            elif tokens.taken("inline"):
-                self._power()
-            elif tokens.taken("const"):
-                more = take_table(tokens)
-            elif parts:
-                parts.pop(0)()
-            else:
-                raise NotShownError("a function of the step's own")
-            if any(name in tables or not name.startswith(f"{model.name}_") for name in more):
-                raise NotShownError("a table of the step's own")
-            tables |= more
-        if parts:
-            raise NotShownError("the step lacks a function")
-        self._told(tables)
-        of_margins = enumerate(strict(tables, model.name))
-        return self.found | {("strict", n): self.field.number(s) for n, s in of_margins}
+    def _own(self, name: str) -> str:
+        """Return the name of a function or table without the model's; refuse one that is there."""
+        prefix = f"{self.iphs.model.name}_"
+        word = name.removeprefix(prefix)
+        if not name.startswith(prefix) or word in self.functions or word in self.tables:
+            raise NotShownError(f"a function or table {name} of the step's own")
+        return word
 
-    def _told(self, tables: Tables) -> None:
+    def _power(self, node: ast.FunctionDef) -> None:
+        """Take a function that is a whole power."""
+        add_helper(node, self.file, "power_[2-8]_of")
+        power = partial(self.field.whole_power, n=int(node.name.split("_")[1]))
+        if not self.file.helper_is(node.name, power, 1):
+            raise NotShownError(f"{node.name} is not shown to be a power")
+
+    def rows(self, *, bends: bool) -> dict[Key, Value]:
+        """Return what is written: by a stage, its margins by comparisons and the rest by branches.
+
+        An integrand is returned without what its mean adds to that of its co-state.
+        """
+        paths = ["path_parameters", "drives"] if self.file.known.paths else []
+        wanted = ["integrands", "stage", "slopes", "sizes", *paths, *["bends"] * bends]
+        if self.functions.keys() != {*wanted}:
+            raise NotShownError("the step has other functions than it should")
+        found = self._integrands()
+        stage = self._function("stage", by_branches=True)
+        found |= stage.rows({"out", "rows"})
+        with reading(self.field, "margins"):
+            found |= self._function("stage").rows({"m"})
+        for name in paths:
+            found |= self._function(name, by_branches=name == "drives").rows()
+        places = [*stage.switches], self._function("slopes").places
+        self._sizes(*places, self._function("bends").places if bends else None)
+        self._told()
+        limits, strict = self.tables.get("limits"), self.tables.get("strict")
+        if not limits or strict is None or len(strict) != max(1, *limits):
+            raise NotShownError("the step does not say which of its limits are strict")
+        of_margins = enumerate(strict[: limits[0]])
+        return found | {("strict", n): self.field.number(s) for n, s in of_margins}
+
+    def _told(self) -> None:
         """Check what tables tell the engine: who takes losses, jumps, what integrands read."""
-        iphs, name = self.iphs, self.iphs.model.name
+        iphs, known = self.iphs, self.file.known
         ports = [port for _, port in iphs.circuit.of(Storage, Body)]
         body = next((n for n, port in enumerate(ports) if isinstance(port, Body)), -1)
         lossy = any(isinstance(port, Storage) for port in ports)
         jumps = any(getattr(e, "discontinuous", False) for e in iphs.model.elements.values())
-        used = {g for value in self.file.known.means.values() for g in value.parts}
-        states = [self.file.known.names[slot.label] for slot in iphs.system.states]
+        used = {g for value in known.means.values() for g in value.parts}
+        states = [known.names[slot.label] for slot in iphs.system.states]
         read = [n for n, value in enumerate(states) if not used.isdisjoint(value.parts)]
         wanted = {"heated": [body if lossy else -1], "jumps": [int(jumps)], "reads": [len(read)]}
-        found = {word: tables.get(f"{name}_{word}") for word in wanted}
-        if found != wanted or tables.get(f"{name}_read", [])[: len(read)] != read:
+        found = {word: self.tables.get(word) for word in wanted}
+        if found != wanted or self.tables.get("read", [])[: len(read)] != read:
             raise NotShownError("the step does not say which states it reads, heats, or jumps with")
-
-    def _power(self) -> None:
-        """Take a function that is a whole power."""
-        name = add_helper(self.tokens, self.file, "power_[2-8]")
-        exponent = int(name.removeprefix("power_"))
-        if not helper_is(self.file, name, lambda z: self.field.whole_power(z, exponent), 1):
-            raise NotShownError(f"{name}_of is not shown to be a power")
 
     # Functions
 
     def _function(self, name: str, *, by_branches: bool = False) -> CFunction:
-        made = CFunction(self.tokens, self.file, by_branches=by_branches)
-        if made.name != name:
-            raise NotShownError(f"the step has {made.name} where {name} should be")
-        return made
+        return CFunction(self.functions[name], self.file, by_branches=by_branches)
 
-    def _integrands(self) -> None:
+    def _integrands(self) -> dict[Key, Value]:
         """Read what means are of; each is then the mean of a co-state and what is added to it."""
         with reading(self.field, "integrands"):
             rows = self._function("integrands").rows()
@@ -193,67 +232,48 @@ class _Step:
         fixed = [names[slot.label] for slot in known.slots["rhs"]]
         fixed += [names[name] for name in model.inputs]
         at = {g: self.field.one for value in fixed for g in value.parts}
-        for (_, n), value in rows.items():
-            label = known.slots["integrands"][int(n)].label
+        for key, value in rows.items():
+            label = known.slots["integrands"][int(key[1])].label
             more = put(spelled(value - known.means[label]), at)
             if not more.parts.isdisjoint(at):
                 raise NotShownError(f"{label} is not shown to be one")
-            self.found["integrands", n] = value - more
+            rows[key] = value - more
             names[label] = names[label] + more
         self.file = replace(self.file, known=replace(known, names=names))
+        return rows
 
-    def _bends(self) -> None:
-        self.bends = self._function("bends").places
-
-    def _stage(self) -> None:
-        """Read a stage: its rates and what it books by branches, its margins by comparisons."""
-        start = self.tokens.at
-        stage = self._function("stage", by_branches=True)
-        self.branches = [*stage.switches]
-        self.found |= stage.rows({"out", "rows"})
-        self.tokens.at = start
-        with reading(self.field, "margins"):
-            self.found |= self._function("stage").rows({"m"})
-
-    def _slopes(self) -> None:
-        self.slopes = self._function("slopes").places
-
-    def _path_parameters(self) -> None:
-        self.found |= self._function("path_parameters").rows()
-
-    def _drives(self) -> None:
-        self.found |= self._function("drives", by_branches=True).rows()
-
-    def _sizes(self) -> None:
+    def _sizes(
+        self, branches: list[Branch], slopes: list[Branch], bends: list[Branch] | None
+    ) -> None:
         """Read the sizes of arrays."""
-        tokens, known, name = self.tokens, self.file.known, self.iphs.model.name
-        tokens.take("void", f"{name}_sizes", "(", "const", f"{name}_reals", "*")
-        p = tokens.word()
-        tokens.take(",", "long", "*")
-        out, found = tokens.word(), list[Value]()
-        tokens.take(")", "{")
-        scope = Scope(self.file, {p: "p", out: "out"}, ChainMap())
-        while not tokens.taken("}"):
-            if tokens.taken("("):
-                tokens.take("void", ")", p)
-            elif tokens.taken("const"):
-                tokens.take("long")
-                name = tokens.word()
-                tokens.take("=")
-                scope.declare(name, (scope.read.whole(tokens.expression()), WHOLE))
-            else:
-                tokens.take(out, "[", str(len(found)), "]", "=")
-                found.append(scope.read.whole(tokens.expression()))
-            tokens.take(";")
+        node, found = self.functions["sizes"], list[Value]()
+        roles = dict(zip((arg.arg for arg in node.args.args), ("p", "out"), strict=True))
+        types = [kind_of(part) for part in (*(a.annotation for a in node.args.args), node.returns)]
+        if types != [f"const {self.iphs.model.name}_reals *", "long *", "static void"]:
+            raise refused(node, "a function of such types")
+        scope = Scope(self.file, roles, ChainMap())
+        for part in node.body:
+            match part:
+                case ast.AnnAssign(ast.Name(name), ast.Constant("const long"), ast.expr() as value):
+                    scope.declare(name, scope.meaning("index", value))
+                case ast.Assign([ast.Subscript(ast.Name(out), ast.Constant(n))], value) if (
+                    roles.get(out) == "out" and n == len(found)
+                ):
+                    found.append(scope.read.whole(value))
+                case ast.Expr(ast.Name()):
+                    pass
+                case _:
+                    raise refused(part, "a statement")
+        known, field = self.file.known, self.field
         places = known.layouts["rhs"].places
-        wanted = [places[-1], known.layouts["integrands"].places[-1], self._end(self.branches)]
-        processes = known.field.zero
-        for slot in self.iphs.system.processes:
-            processes = processes + (known.sizes[slot.bank] if slot.bank else known.field.one)
-        wanted += [known.layouts["ledger"].places[-1], processes, self._end(self.slopes)]
-        wanted += known.sizes.values()
-        bends = [self._end(self.bends)] * tokens.bends
-        if found != [*wanted, *places[:-1], *bends]:
+        wanted = [places[-1], known.layouts["integrands"].places[-1], self._end(branches)]
+        processes = field.total(
+            known.sizes[slot.bank] if slot.bank else field.one
+            for slot in self.iphs.system.processes
+        )
+        wanted += [known.layouts["ledger"].places[-1], processes, self._end(slopes)]
+        wanted += [*known.sizes.values(), *places[:-1]]
+        if found != [*wanted, *([] if bends is None else [self._end(bends)])]:
             raise NotShownError("the sizes of the step's arrays are not the system's")
 
     def _end(self, written: list[Branch]) -> Value:
@@ -265,3 +285,13 @@ class _Step:
         if left or len(dict(written)) < len(written):
             raise NotShownError("the places of branches or slopes do not follow on one another")
         return end
+
+
+def _number(node: ast.expr) -> int:
+    """Return a whole number."""
+    match node:
+        case ast.Constant(int() as number):
+            return number
+        case ast.UnaryOp(ast.USub(), ast.Constant(int() as number)):
+            return -number
+    raise refused(node, "no whole number")

@@ -159,7 +159,7 @@ def test_a_quotient_is_needed_only_where_it_is_chosen(made):
         ("NumPy", "out[2] = d\n", "out[2] = np.where(d > 0, d, 1)\n"),
         ("NumPy", "out[3] = np.min(rho,", "out[3] = np.min(np.abs(rho),"),
         ("C", "out[7] = M;", "out[7] = fabs(M);"),
-        ("C", "min(out[4], i_0[j])", "min(out[4], i_0[j] > 0.0 ? i_0[j] : 0.0)"),
+        ("C", "min(out[4], i_0[j])", "min(out[4], pick(i_0[j] > 0.0, i_0[j], 0.0))"),
     ],
 )
 def test_margins_are_compared_outside_the_domain_too(made, language, old, new):
