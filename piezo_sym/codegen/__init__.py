@@ -5,9 +5,8 @@ from typing import Protocol
 from piezo_sym.codegen import c, numpy
 from piezo_sym.codegen.collocation import Collocation, collocation_of
 from piezo_sym.codegen.lower import lower
-from piezo_sym.codegen.numpy.head import MARK
 from piezo_sym.codegen.numpy.module import numpy_module
-from piezo_sym.codegen.program import Program
+from piezo_sym.codegen.program import MARK, Program
 
 
 class Backend(Protocol):

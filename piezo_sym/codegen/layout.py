@@ -105,10 +105,5 @@ def terms(value: Add, write: Callable[[Expr], Piece]) -> Iterator[str]:
         yield f"{sign} {enclose(write(size), PRODUCT)}"
 
 
-def _spelled(slots: Sequence[Slot]) -> str:
-    fixed = sum(slot.bank is None for slot in slots)
-    return _sum(fixed, [f"{slot.bank}_count" for slot in slots if slot.bank])
-
-
 def _sum(fixed: int, sizes: Sequence[str]) -> str:
     return " + ".join([*([str(fixed)] if fixed or not sizes else []), *sizes])

@@ -8,7 +8,7 @@ bank; a sum over lanes is always a quantity of its own.  There is no algebra bey
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import final
 
@@ -16,6 +16,10 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.expressions.tree import Expr, LaneSum, Node, names
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.values import HASH, VERDICT, lane_name, place
+from piezo_sym.version import VERSION
+
+#: What every generated file says of itself.
+MARK = "Made by piezo_sym"
 
 
 @final
@@ -179,6 +183,27 @@ def blank(program: Program) -> Program:
         for name, value in program.defaults.items()
     }
     return replace(program, defaults=values, sha256=place(HASH), verdict=place(VERDICT))
+
+
+def described(
+    program: Program, plain: Callable[[str], str], notes: Iterable[str], counts: str = ""
+) -> list[str]:
+    """Return the lines that say at the head of a file what it is; `plain` makes a text safe."""
+    u = ", ".join(field.name for field in program.inputs)
+    return [
+        f"{plain(program.title or program.name)}: irreversible port-Hamiltonian system.",
+        "",
+        *([f"Source:  {plain(program.source)}"] if program.source else []),
+        f"Model:   {program.name}, spec sha256 {program.sha256}",
+        f"Proofs:  {program.verdict}",
+        "",
+        f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
+        *notes,
+        "",
+        f"x = ({', '.join(field.spread for field in program.states)})",
+        f"u = ({u})",
+        *(f"bank {bank}: lanes j = 1 ... {counts}{bank}_count" for bank in program.counts),
+    ]
 
 
 def needed(

@@ -66,6 +66,13 @@ def rhs(x, u, p, /):
 """
 
 
+_PARAMETERS = """\
+@dataclass(frozen=True)
+class Parameters:
+    'Its text is free.'
+"""
+
+
 def numpy_functions(text: str, known: Proved) -> Mapping[str, ast.FunctionDef]:
     """Return the functions of a module that compute rows."""
     if re.search(r"coding[:=]", "\n".join(text.split("\n")[:2])):
@@ -76,18 +83,15 @@ def numpy_functions(text: str, known: Proved) -> Mapping[str, ast.FunctionDef]:
         raise NotShownError(f"the NumPy module cannot be parsed: {error}") from error
     iphs = known.iphs
     called = (r.numpy_helper for r in RECORDS.values() if f"{r.numpy}(" in text)
-    left, tables = [*_helpers(iphs), *chain.from_iterable(called)], _tables(known)
+    left, tables = [*_fixed(iphs), *chain.from_iterable(called)], _tables(known)
     functions: dict[str, ast.FunctionDef] = {}
     for node in module.body[1:]:
         match node:
             case ast.FunctionDef(name) if name in ARGUMENTS and name not in functions:
                 functions[name] = node
             case ast.Assign([ast.Name(name)], value) if name in tables:
-                if _literal(value) != tables.pop(name):
+                if _rows(value) != tables.pop(name):
                     raise NotShownError(f"the table {name} is another one")
-            case ast.ClassDef("Parameters"):
-                _check_parameters(node, iphs)
-                tables.pop("Parameters", None)
             case _ if (bare := _bare(node)) in left:
                 left.remove(bare)
             case _:
@@ -102,16 +106,20 @@ def _is_text(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
-def _helpers(iphs: IPHS) -> list[str]:
-    """Return what stands in every module, statement by statement."""
-    slots = iphs.system.states
+def _fixed(iphs: IPHS) -> list[str]:
+    """Return what stands in every module, and the parameters of this one, by statements."""
+    slots, lanes, model = iphs.system.states, lane_parameters(iphs.model), iphs.model
     size = [str(sum(s.bank is None for s in slots))]
     size += [f"p.{s.bank}_count" for s in slots if s.bank]
-    helpers = _HELPERS.format(size=" + ".join(size), inputs=len(iphs.model.inputs))
-    found = _statements(helpers)
-    if not banks(iphs.model):
-        return [text for text in found if "_Lanes =" not in text and "_lanes(" not in text]
-    return [*found]
+    found = _statements(_HELPERS.format(size=" + ".join(size), inputs=len(model.inputs)))
+    if not banks(model):
+        found = tuple(text for text in found if "_Lanes =" not in text and "_lanes(" not in text)
+    fields = [
+        f"    {name}: {'_Lanes' if name in lanes else 'float'} = {entry.si!r}"
+        for name, entry in model.parameters.items()
+    ]
+    fields += [f"    {bank}_count: int = {count}" for bank, count in banks(model).items()]
+    return [*found, *_statements("\n".join([_PARAMETERS, *fields]))]
 
 
 @cache
@@ -128,21 +136,20 @@ def _bare(node: ast.stmt) -> str:
     return f"{ast.unparse(head)}\n{ast.unparse(ast.Module(body, []))}"
 
 
-def _literal(node: ast.expr) -> object:
+def _rows(node: ast.expr) -> object:
     """Return a table: constants, tuples of them, and records without unit and text."""
     match node:
-        case ast.Constant(value):
-            return value
-        case ast.UnaryOp(ast.USub(), ast.Constant(int() | float() as value)):
-            return -value
         case ast.Tuple(parts):
-            return tuple(map(_literal, parts))
+            return tuple(map(_rows, parts))
         case ast.Call(ast.Name("Record"), [_, _, _, *_] as parts, []):
-            name, _, _, *bank = map(_literal, parts)
-            return (name, bank[0] if bank else None)
+            name, _, _, bank, *_ = (*map(_rows, parts), None)
+            return name, bank
         case ast.Call(ast.Name("Condition"), [text, strict], []):
-            return _literal(text), _literal(strict)
-    raise NotShownError("a table of the NumPy module is no list of constants")
+            return _rows(text), _rows(strict)
+    try:
+        return ast.literal_eval(node)
+    except ValueError as error:
+        raise NotShownError("a table of the NumPy module is no list of constants") from error
 
 
 def _tables(known: Proved) -> dict[str, object]:
@@ -162,23 +169,4 @@ def _tables(known: Proved) -> dict[str, object]:
         "PARAMETERS": tuple((name, owners.get(name)) for name in model.parameters),
         "BANKS": tuple(banks(model)),
         "DOMAIN": tuple((condition_text(c.tree), "=" not in c.tree.op) for c in conditions(model)),
-        "Parameters": None,
     }
-
-
-def _check_parameters(node: ast.ClassDef, iphs: IPHS) -> None:
-    """Refuse parameters with other names, values or methods than the model's."""
-    wanted: list[tuple[str, object]] = [(n, p.si) for n, p in iphs.model.parameters.items()]
-    wanted += [(f"{bank}_count", count) for bank, count in banks(iphs.model).items()]
-    found = []
-    for part in node.body[1:]:
-        match part:
-            case ast.AnnAssign(ast.Name(name), ast.Name(kind), ast.Expr() | ast.expr() as value, 1):
-                found.append((name, _literal(value)))
-                if kind not in {"float", "int", "_Lanes"}:
-                    raise NotShownError(f"parameter {name} has another type")
-            case _:
-                raise NotShownError("the class Parameters is not a list of numbers")
-    frozen = [ast.unparse(item) for item in chain(node.decorator_list, node.bases, node.keywords)]
-    if found != wanted or frozen != ["dataclass(frozen=True)"] or not _is_text(node.body[0]):
-        raise NotShownError("the values of Parameters are not the model's")

@@ -12,10 +12,8 @@ from textwrap import wrap
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.layout import size_in_words
-from piezo_sym.codegen.numpy.head import MARK
-from piezo_sym.codegen.program import Described, Program
+from piezo_sym.codegen.program import Described, Program, described
 from piezo_sym.errors import one_line
-from piezo_sym.version import VERSION
 
 WIDTH = 96
 MOST_LANES = 16  # of a bank whose values stand in the header
@@ -30,15 +28,6 @@ _ORDER = (
     "states processes initial_state rhs jacobian outputs supply energy entropy temperatures heat "
     "entropy_production elements margins"
 )
-_ARGUMENTS = {"out": ("out",), "state": ("x", "u", "p", "out")}
-TAKES: Mapping[str, tuple[str, ...]] = {
-    "states": ("p",),
-    "processes": ("p",),
-    "initial_state": ("u", "p", "out"),
-    "energy": ("x", "p"),
-    "entropy": ("x", "p"),
-    "temperatures": ("x", "p", "out"),
-}
 SCALARS = {"states": "long", "processes": "long", "energy": "double", "entropy": "double"}
 
 
@@ -67,21 +56,8 @@ def text_of(text: str) -> str:
 
 def opening(program: Program) -> str:
     """Return the comment at the head of both files."""
-    u = ", ".join(field.name for field in program.inputs)
-    lines = [
-        f"{text_of(program.title or program.name)}: irreversible port-Hamiltonian system.",
-        "",
-        *([f"Source:  {text_of(program.source)}"] if program.source else []),
-        f"Model:   {program.name}, spec sha256 {program.sha256}",
-        f"Proofs:  {program.verdict}",
-        "",
-        f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
-        "C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.",
-        "",
-        f"x = ({', '.join(field.spread for field in program.states)})",
-        f"u = ({u})",
-        *(f"bank {bank}: lanes j = 1 ... {bank}_count" for bank in program.counts),
-    ]
+    notes = ["C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno."]
+    lines = described(program, text_of, notes)
     return "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */"])
 
 
@@ -173,9 +149,11 @@ def declaration(
 
 def _declarations(program: Program) -> Iterator[str]:
     docs = {**FUNCTIONS, **{function.name: function.doc for function in program.functions}}
+    takes = {f.name: (*f.arguments, *([] if f.scalar else ["out"])) for f in program.functions}
+    takes |= dict.fromkeys(("states", "processes"), ("p",))
     words = added(("x", "u", "p", "out", "n", "j", "l", "left"), program, c_names(program))
     for name in filter(docs.__contains__, _ORDER.split()):
-        arguments = TAKES.get(name, _ARGUMENTS["state"])
+        arguments = takes.get(name, ("x", "u", "p", "out"))
         lines = [*wrapped(f"{docs[name]}."), *_given(program, name, arguments, words)]
         head = declaration(program, name, arguments, words)
         yield "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */", f"{head};"])

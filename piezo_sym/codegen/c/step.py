@@ -18,7 +18,6 @@ from piezo_sym.codegen.c.head import comment, opening
 from piezo_sym.codegen.c.lines import Words, indented, used_only
 from piezo_sym.codegen.c.names import added, c_names
 from piezo_sym.codegen.c.order import Write, least_over_lanes
-from piezo_sym.codegen.c.paths import drive_rows, path_rows, path_table
 from piezo_sym.codegen.c.record import give_text, place_text, record_text
 from piezo_sym.codegen.c.style import powers
 from piezo_sym.codegen.collocation import Collocation
@@ -117,11 +116,33 @@ class _Printer:
 
     def paths(self) -> Iterator[str]:
         """Yield the table of path functionals, and the function of what they take, if any."""
-        if self.made.paths:
-            yield path_table(self.program, self.made.paths)
-            doc = "Stiffness and limit of each path functional"
-            yield self._of_state("path_parameters", doc, path_rows(self.made.paths))
-            writes, local = self.frame.writes("out", drive_rows(self.made.paths))
+        paths, states = self.made.paths, [state.name for state in self.program.states]
+        if paths:
+            banks = [None, *self.program.counts]
+            table = (
+                f"{banks.index(p.bank) - 1}, {int(p.own)}, {states.index(p.inner)}" for p in paths
+            )
+            yield "\n".join(
+                [
+                    *comment(
+                        "Path functionals: bank or -1, whether each lane has a drive, inner state"
+                    ),
+                    f"#define PATHS {len(paths)}",
+                    f"static const int {self.name}_path[PATHS][3] = {{",
+                    *(f"    {{{row}}}," for row in table),
+                    "};",
+                ]
+            )
+            rows = [
+                OutputRow(Slot(path.inner, path.bank), value)
+                for path in paths
+                for value in (path.stiffness, path.limit)
+            ]
+            yield self._of_state(
+                "path_parameters", "Stiffness and limit of each path functional", rows
+            )
+            drives = [OutputRow(Slot(p.slip, p.bank if p.own else None), p.drive) for p in paths]
+            writes, local = self.frame.writes("out", drives)
             body = self.frame.computed(self.made.stage.quantities, writes)
             doc = "Drives of path functionals: the rates of their coordinates"
             words = ("x", "g", "b", "u", "p", "out")

@@ -8,14 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from piezo_sym.codegen.program import Described, Program
+from piezo_sym.codegen.program import Described, Program, described
 from piezo_sym.expressions import functions
-from piezo_sym.version import VERSION
 
 STANDARD = ("from dataclasses import dataclass", "from typing import NamedTuple")
-
-#: What every generated file says of itself.
-MARK = "Made by piezo_sym"
 
 RECORDS = '''class Record(NamedTuple):
     """One row of an array, or of a bank one row per lane: its name, SI unit and meaning."""
@@ -83,8 +79,9 @@ def head(program: Program, text: str = "") -> str:
     called = [r.numpy_helper for r in functions.RECORDS.values() if f"{r.numpy}(" in text]
     imports, definitions = zip(("", ""), *(lines for lines in called if lines), strict=True)
     standard = "\n".join(sorted({*STANDARD, *imports} - {""}))
+    notes = ["Arrays have shape (n, *batch); values are in SI units."]
     parts = [
-        _docstring(program),
+        '"""' + "\n".join([*described(program, _plain, notes, "Parameters."), '"""']),
         f"{standard}\n\nimport numpy as np",
         *definitions[1:],
         f'NAME = "{program.name}"\nSPEC_SHA256 = "{program.sha256}"',
@@ -110,27 +107,6 @@ def _joined(parts: Iterable[str]) -> str:
         )
         text += ("\n\n\n" if wide else "\n\n") + part if text else part
     return text
-
-
-def _docstring(program: Program) -> str:
-    x = ", ".join(field.spread for field in program.states)
-    u = ", ".join(field.name for field in program.inputs)
-    lines = [
-        f'"""{_plain(program.title or program.name)}: irreversible port-Hamiltonian system.',
-        "",
-        *([f"Source:  {_plain(program.source)}"] if program.source else []),
-        f"Model:   {program.name}, spec sha256 {program.sha256}",
-        f"Proofs:  {program.verdict}",
-        "",
-        f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
-        "Arrays have shape (n, *batch); values are in SI units.",
-        "",
-        f"x = ({x})",
-        f"u = ({u})",
-        *(f"bank {bank}: lanes j = 1 ... Parameters.{bank}_count" for bank in program.counts),
-        '"""',
-    ]
-    return "\n".join(lines)
 
 
 def _plain(text: str) -> str:
