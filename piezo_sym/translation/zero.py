@@ -14,7 +14,6 @@ from piezo_sym.translation.change import put
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import power
 from piezo_sym.translation.numerator import vanishes, vanishes_with
-from piezo_sym.translation.possible import impossible
 from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
 
 MOST_CASES = 500
@@ -146,15 +145,9 @@ def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, edges: Edges
 
 def _common(cases: list[Case]) -> Value | None:
     """Return the value that all possible cases share, or None if that is not shown."""
-    while cases:
-        (base, sides), *rest = cases
-        wrong = [case for case in rest if _differs(base, case)]
-        if all(impossible(case[1]) for case in wrong):
-            return base
-        if not impossible(sides):
-            return None
-        cases = rest
-    return None
+    if not cases or any(_differs(cases[0][0], case) for case in cases[1:]):
+        return None
+    return cases[0][0]
 
 
 def _cases(
