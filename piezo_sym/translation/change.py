@@ -56,11 +56,11 @@ def _put(field: GeneratorField, g: int, new: Mapping[int, Value]) -> Value:
 
 
 def spelled(value: Value) -> Value:
-    """Return a value with all letters written out."""
+    """Return a value with letters written out, except in sums over the lanes they belong to."""
     gens = value.field.gens
-    while letters := {g: gens[g].arg for g in value.parts if gens[g].kind == "letter"}:
-        value = put(value, {g: arg for g, arg in letters.items() if arg is not None})
-    return value
+    new = {g: arg for g in value.parts if gens[g].kind == "letter" and (arg := gens[g].arg)}
+    written = put(value, new)
+    return written if written == value else spelled(written)
 
 
 def in_exponentials(value: Value) -> Value:

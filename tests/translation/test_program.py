@@ -15,6 +15,7 @@ from piezo_sym.expressions.tree import LaneSum, Num
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.translation.program import different, reference_of
+from tests.mutants.specs import spec_of
 from tests.translation.mutants import mutants
 from tests.translation.printed import TEXTS, printed, rows
 
@@ -100,6 +101,15 @@ def test_a_refuted_row_has_numbers():
     assert row.verdict is Verdict.REFUTED
     assert "rhs['phi']" in row.reason
     assert {*row.witness} >= {"q", "p", "Q_C", "phi", "S", "V_in", "C"}
+
+
+@pytest.mark.parametrize(
+    "law", ["d*(deadzone(v, a) + saturate(v, 2*a))", "d*v*(1 if v > a else 2)"]
+)
+def test_laws_whose_slopes_choose_between_whole_numbers_are_proved(law):
+    iphs = derive(parse(spec_of(f"{law} | d > 0; a > 0 | a=1.0")))
+    (row,) = rows(iphs, printed(iphs))
+    assert row.verdict is Verdict.PROVED, row.reason
 
 
 def test_a_long_condition_of_a_bank_is_printed_as_its_least_lane():

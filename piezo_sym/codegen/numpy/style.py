@@ -65,12 +65,19 @@ def _call(function: str, args: tuple[Piece, ...]) -> Piece:
     return text, STRENGTHS[record.binds]
 
 
+def _choose(then: Piece, test: str, other: Piece) -> Piece:
+    parts = [then[0], other[0]]
+    if all(part.removeprefix("-").isdecimal() for part in parts):
+        parts = [f"{part}.0" for part in parts]  # an array of floats, as other values are
+    return f"np.where({test}, {', '.join(parts)})", ATOM
+
+
 NUMPY = Style(
     number=_number,
     name=lambda name: (name, ATOM),
     power=_power,
     call=_call,
-    choose=lambda then, test, other: (f"np.where({test}, {then[0]}, {other[0]})", ATOM),
+    choose=_choose,
     lane_sum=lambda arg, _: (f"np.sum({arg[0]}, axis=0)", ATOM),
 )
 
