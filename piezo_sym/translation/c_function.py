@@ -14,14 +14,15 @@ of that lane.
 
 import ast
 from collections import ChainMap
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.translation.c_scope import Branch, CVariable, Deferred, File, Scope, kind_of
-from piezo_sym.translation.expressions import refused
+from piezo_sym.translation.expressions import PLAIN, refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import LEAST, Key, Rows
+from piezo_sym.translation.zero import is_zero
 
 #: What may be written to: results, ledger rows, switching functions, margins.
 WRITTEN = ("out", "rows", "s", "m")
@@ -256,7 +257,7 @@ class CFunction:
                 own = scope.roles.get(name) == role and key in self.least and word == least
                 own = own and ast.unparse(first) == f"{name}[{ast.unparse(place)}]"
                 lesser = lambda a, b: scope.read.apply("minimum", [a, b])  # noqa: E731
-                known = word == "least" or self.file.helper_is("min", lesser, 2)
+                known = word == "least" or helper_is(self.file, "min", lesser, 2)
                 if own and scope.lanes and known:
                     self.summed["the least"] = None
                     self.written.append((role, key, scope.defer(value), False))
@@ -264,3 +265,13 @@ class CFunction:
         if scope.lanes or key in self.least:
             raise refused(node, "a margin")
         return False
+
+
+def helper_is(file: File, name: str, function: Callable[..., Value], count: int) -> bool:
+    """Return whether a function of the file's own is a given one, of so many numbers."""
+    if name not in file.helpers:
+        return False
+    args = [file.known.field.name(f"{n} of {name}") for n in range(count)]
+    names = {f"a{n}": (arg, PLAIN) for n, arg in enumerate(args)}
+    call = ast.Call(ast.Name(name), [ast.Name(arg) for arg in names], [])
+    return is_zero(Scope(file, {}, ChainMap({**names})).read(call)[0] - function(*args))

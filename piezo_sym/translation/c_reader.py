@@ -57,8 +57,4 @@ def add_helper(node: ast.FunctionDef, file: File, allowed: str) -> None:
     kinds = {kind_of(arg.annotation) for arg in node.args.args}
     if known or not re.fullmatch(allowed, node.name) or not kinds <= {file.number, "int"}:
         raise NotShownError(f"a function {node.name} of the C file's own")
-    match node.body:
-        case [ast.Return(ast.expr())]:
-            file.helpers[node.name] = node
-        case _:
-            raise NotShownError(f"{node.name} is more than an expression")
+    file.helpers[node.name] = node

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections import ChainMap
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import final
@@ -27,11 +27,11 @@ from piezo_sym.translation.expressions import (
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Proved
 from piezo_sym.translation.signs import compare, on_path
-from piezo_sym.translation.zero import is_zero
 
-#: What the step's own words for comparisons stand for.
-COMPARISONS: dict[str, ast.cmpop] = {"is_above": ast.Gt(), "is_at_least": ast.GtE()}
-_WORDS = {"chosen", "wide", *COMPARISONS}
+#: What a step's own words for comparisons stand for.
+_COMPARISONS = {"is_above": ">", "is_at_least": ">="}
+#: The words of a step that are no functions of the library.
+_WORDS = {"wide", *_COMPARISONS}
 
 
 @final
@@ -56,15 +56,6 @@ class File:
     calls: Mapping[str, str]
     results: Mapping[str, str] = field(default_factory=dict)
     helpers: dict[str, ast.FunctionDef] = field(default_factory=dict)
-
-    def helper_is(self, name: str, function: Callable[..., Value], count: int) -> bool:
-        """Return whether a function of the file's own is a given one, of so many numbers."""
-        if name not in self.helpers:
-            return False
-        args = [self.known.field.name(f"{n} of {name}") for n in range(count)]
-        names = {f"a{n}": (arg, PLAIN) for n, arg in enumerate(args)}
-        call = ast.Call(ast.Name(name), [ast.Name(arg) for arg in names], [])
-        return is_zero(Scope(self, {}, ChainMap({**names})).read(call)[0] - function(*args))
 
 
 @final
@@ -226,7 +217,14 @@ class Scope:
         known, names, real = self.file.known, self.names, self.file.number == "real"
         match node:
             case ast.Name(name) if name in names:
-                return self._named(names[name], node)
+                match names[name]:
+                    case Deferred() as found:
+                        value, shape = found.read()
+                        return value if found.kind else known.field.letter(value), shape
+                    case CVariable() as found:
+                        return found.value, PLAIN
+                    case (Value() as value, Shape(bank="") as shape):
+                        return value, shape
             case ast.Name("zero") if real:
                 return known.field.zero, PLAIN
             case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
@@ -241,27 +239,14 @@ class Scope:
                             return moved(value, bank, 1) if lane else value, PLAIN
             case ast.Call(ast.Name("wide"), [arg], []) if real:
                 return self.read.any(arg)
-            case ast.Call(
-                ast.Name("chosen"), [ast.Call(ast.Name(word), sides, []), then, other], []
-            ) if real and word in COMPARISONS and len(sides) == 2:
-                condition = ast.Compare(sides[0], [COMPARISONS[word]], [sides[1]])
-                if self.switches is None:
-                    return self.read.choice(condition, then, other)
-                return self.read.chosen(self._branch(condition, self.switches), then, other)
+            case ast.Call(ast.Name(word), [left, right], []) if real and word in _COMPARISONS:
+                if self.switches is not None:
+                    return self._branch(node, self.switches), TEST
+                sides = self.read.numeric(left)[0], self.read.numeric(right)[0]
+                return compare(_COMPARISONS[word], *sides), TEST
             case ast.Call(ast.Name(function), args, []) if function in self.file.helpers:
                 return self._inlined(self.file.helpers[function], args, node), PLAIN
         raise refused(node, "an expression")
-
-    def _named(self, found: Meaning, node: ast.expr) -> Read:
-        match found:
-            case Deferred():
-                value, shape = found.read()
-                return value if found.kind else self.file.known.field.letter(value), shape
-            case CVariable():
-                return found.value, PLAIN
-            case (Value() as value, Shape(bank="") as shape):
-                return value, shape
-        raise refused(node, "an array as a number")
 
     def _inlined(self, helper: ast.FunctionDef, args: list[ast.expr], node: ast.expr) -> Value:
         """Return what a helper gives for some arguments."""
@@ -270,10 +255,10 @@ class Scope:
         names = ChainMap[str, Meaning]()
         for own, arg in zip(helper.args.args, args, strict=True):
             names[own.arg] = Deferred(arg, self, kind_of(own.annotation))
-        (returned,) = helper.body
-        assert isinstance(returned, ast.Return)
-        assert returned.value is not None
-        return Scope(self.file, {}, names).read(returned.value)[0]
+        match helper.body:
+            case [ast.Return(ast.expr() as value)]:
+                return Scope(self.file, {}, names).read(value)[0]
+        raise refused(node, "a call of what is more than an expression")
 
     # Branches
 
@@ -284,13 +269,14 @@ class Scope:
         return place - self.file.known.field.name("index", self.banks[0]), self.banks[0]
 
     def _branch(self, condition: ast.expr, switches: dict[Branch, Deferred | Value]) -> Value:
-        """Return 1 where a branch is taken: ``NAME > 0.0``, or ``NAME[j] > 0.0`` in a loop."""
+        """Return 1 where a branch is taken: ``is_above(NAME, 0.0)``, in a loop ``NAME[j]``."""
         name, bank = "", None
         match condition:
-            case ast.Compare(ast.Name(shared), [ast.Gt()], [ast.Constant(0.0)]):
+            case ast.Call(ast.Name("is_above"), [ast.Name(shared), ast.Constant(0.0)]):
                 name = shared
-            case ast.Compare(
-                ast.Subscript(ast.Name(array), ast.Name(j)), [ast.Gt()], [ast.Constant(0.0)]
+            case ast.Call(
+                ast.Name("is_above"),
+                [ast.Subscript(ast.Name(array), ast.Name(j)), ast.Constant(0.0)],
             ) if [j] == [loop for loop, _ in self.lanes]:
                 name, bank = array, self.banks[0]
         match self.names.get(name):

@@ -31,7 +31,7 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks, lane_parameters
-from piezo_sym.translation.c_function import NOT_COMPARED, CFunction
+from piezo_sym.translation.c_function import NOT_COMPARED, CFunction, helper_is
 from piezo_sym.translation.c_reader import add_helper
 from piezo_sym.translation.c_scope import Branch, File, Scope, kind_of
 from piezo_sym.translation.c_text import python_of
@@ -101,7 +101,7 @@ def read_step(text: str, known: Proved) -> dict[Key, Value]:
     bends = BENDS in text
     parts = [*_data(text, known.iphs.model), *_path_table(known), *([BENDS] if bends else [])]
     module = python_of(text, known.iphs.model.name, macros, parts)
-    calls = {f"{name}_of": _LIBRARY[name] for name in lines.values()}
+    calls = {"chosen": "choice"} | {f"{name}_of": _LIBRARY[name] for name in lines.values()}
     file = File(known, "real", "reals", _SIGNATURES, calls, _RESULTS)
     return _Step(module, file).rows(bends=bends)
 
@@ -175,7 +175,7 @@ class _Step:
         """Take a function that is a whole power."""
         add_helper(node, self.file, "power_[2-8]_of")
         power = partial(self.field.whole_power, n=int(node.name.split("_")[1]))
-        if not self.file.helper_is(node.name, power, 1):
+        if not helper_is(self.file, node.name, power, 1):
             raise NotShownError(f"{node.name} is not shown to be a power")
 
     def rows(self, *, bends: bool) -> dict[Key, Value]:

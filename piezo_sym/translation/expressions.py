@@ -23,7 +23,7 @@ from piezo_sym.translation.signs import choose, compare, on_path, side_of
 
 MOST_MAGNITUDE = 300
 MOST_WHOLE = 2**31 - 1
-_ARGUMENTS = {"pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
+_ARGUMENTS = {"choice": 3, "pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
 #: NumPy's functions that give integers of integers, which may wrap round.
 _INTEGERS = frozenset({"abs", "sign", "minimum", "maximum", "clip", "sum"})
 _OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
@@ -134,12 +134,7 @@ class Expressions:
 
     def choice(self, condition: ast.expr, then: ast.expr, other: ast.expr) -> Read:
         """Return one value or the other; each is needed only where it is chosen."""
-        value, shape = self.chosen(self.test(condition), then, other)
-        return value, joined(shape, self.shape_of(condition), condition)
-
-    def chosen(self, test: Value, then: ast.expr, other: ast.expr) -> Read:
-        """Return one value where `test` is 1, and the other where it is 0."""
-        field, parts = self.field, list[Read]()
+        field, test, parts = self.field, self.test(condition), list[Read]()
         for chosen, node in ((test, then), (field.one - test, other)):
             with on_path(field, field.path and field.path * chosen):
                 parts.append(self.any(node))
@@ -148,7 +143,8 @@ class Expressions:
                 return parts[0]
             raise refused(then, "a choice of integers")
         (first, shape), (second, shape_of_other) = map(self._real, parts)
-        return choose(test, first, second), joined(shape, shape_of_other, then)
+        shape = joined(shape, shape_of_other, then)
+        return choose(test, first, second), joined(shape, self.shape_of(condition), condition)
 
     def shape_of(self, condition: ast.expr) -> Shape:
         """Return the shape of the numbers that a condition compares."""

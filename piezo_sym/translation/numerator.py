@@ -78,17 +78,19 @@ class _Roots:
         """Return a value times its denominators, generators of some kinds written out."""
         found, _ = self.of(value)
         for g in reversed(self.order):
-            if self.gens[g].kind in kinds:
+            if self.gens[g].kind in kinds and not found.is_zero():
                 found = self.written_out(found, g)
         return found
 
 
-def vanishes(value: Value, kinds: Collection[str] = ("power",)) -> bool:
+def vanishes(value: Value) -> bool:
     """Return whether a value's numerator has no terms, its generators taken as independent.
 
-    Whole powers of generators of the given `kinds` are replaced by those of their arguments.
+    Powers of sums are written out, and letters if it has terms without.
     """
-    return not value.terms or bool(_Roots(value).numerator(value, kinds).is_zero())
+    roots = _Roots(value)
+    tried = (roots.numerator(value, kinds) for kinds in (("power",), ("power", "letter")))
+    return not value.terms or any(found.is_zero() for found in tried)
 
 
 def vanishes_with(value: Value, other: Value) -> bool:

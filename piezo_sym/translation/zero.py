@@ -10,11 +10,11 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import product
 
-from piezo_sym.translation.change import put, spelled
+from piezo_sym.translation.change import put
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import power
 from piezo_sym.translation.numerator import vanishes, vanishes_with
-from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign
+from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
 
 MOST_CASES = 500
 Case = tuple[Value, dict[Value, int]]
@@ -23,13 +23,16 @@ Edges = frozenset[Value]
 
 def is_zero(value: Value, *, edges: Edges = frozenset()) -> bool:
     """Return whether a value is shown to be zero, except where a difference in `edges` is zero."""
+    letters = [g for g in value.parts if value.field.gens[g].kind == "letter"]
     try:
-        shown = _is_zero(value, edges=edges)
+        if _is_zero(value, edges=edges):
+            return True
     except NotShownError:
-        if not any(value.field.gens[g].kind == "letter" for g in value.parts):
+        if not letters:
             raise
-        shown = False
-    return shown or ((new := spelled(value)) != value and is_zero(new, edges=edges))
+    spelled = (_spelled(value, letter) for letter in sorted(letters, reverse=True))
+    new = next((new for new in spelled if new != value), None)  # none if all are in sums over lanes
+    return new is not None and is_zero(new, edges=edges)
 
 
 def edges_of(value: Value) -> Edges:
@@ -39,13 +42,35 @@ def edges_of(value: Value) -> Edges:
     return frozenset(d for d in found if d is not None and d.parts & field.states)
 
 
+def _spelled(value: Value, letter: int) -> Value:
+    """Return a value without a letter.
+
+    If the letter's value is linear in a state with a nonzero factor, a new name replaces the letter
+    and the state is expressed by it: as the name takes all values when the state does, the equation
+    holds for all values of the one if for all of the other.  Else the letter is written out.
+    """
+    field, arg = value.field, value.field.gens[letter].arg
+    assert arg is not None
+    linear = not any(field.gens[g].kind == "sign" for g in arg.parts)
+    for g in sorted(arg.parts & field.states) if linear else ():
+        own = Value(field, {mono: c for mono, c in arg.terms.items() if (g, 1) in mono})
+        rest, factor = arg - own, own * Value(field, {((g, -1),): 1})
+        alone = g not in factor.parts | rest.parts and not sign_of(field, g)
+        if alone and has_sign(factor) and arg.lanes == field.gens[g].lanes:
+            bank, lane = next(iter(arg.lanes), (None, 0))
+            new = field.name(f"letter {letter}", bank, lane)
+            field.states |= new.parts
+            return put(value, {letter: new, g: (new - rest) * _inverse(factor)})
+    return put(value, {letter: arg})
+
+
 def _is_zero(value: Value, *, edges: Edges) -> bool:
     parts = _apart(value)
     if len(parts) > 1:
         return all(is_zero(part, edges=edges) for part in parts)
     groups = _groups(value)
     if not groups:
-        return vanishes(value) or vanishes(value, ("power", "letter"))
+        return vanishes(value)
     if _by_cases(value, groups, edges=edges):
         return True
     together = [tuple(d for group in groups for d in group)]
