@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import final
 
 from piezo_sym.codegen.collocation import Slopes
@@ -59,7 +60,6 @@ class StepCoupling:
     Attributes
     ----------
     places : the slopes, where they stand.
-    shared : how many slopes lie between shared states.
     sizes : of each bank, how many rows of slopes its lanes have.
     states : the shared states, by their place among all; borders come after them.
     borders : how many there are.
@@ -69,7 +69,6 @@ class StepCoupling:
     """
 
     places: tuple[At, ...]
-    shared: int
     sizes: Mapping[str, int]
     states: tuple[int, ...]
     borders: int
@@ -95,13 +94,13 @@ class StepCoupling:
         yield from table(f"{name}_state", self.states)
         yield from table(f"{name}_order", self.solved.order)
         yield from table(f"{name}_pivot", [slots[n, n] for n in self.solved.order])
-        below, right, updates = [*_eliminated(self.solved)]
-        yield from _ranges(f"{name}_below", below)
-        yield from _ranges(f"{name}_right", right)
-        yield from table(f"{name}_update", updates)
+        yield from _ranges(f"{name}_below", self.solved.below)
+        yield from _ranges(f"{name}_right", self.solved.right)
+        yield from table(f"{name}_update", self.solved.updates)
         for what in ("states", "columns", "rows"):
             yield from _ranges(f"{name}_lane_{what}", [getattr(b, what) for b in self.banks])
-        yield from table(f"{name}_first", [*_first(self.banks)])
+        before = accumulate((len(b.rows) * len(b.columns) for b in self.banks), initial=0)
+        yield from table(f"{name}_first", [*before][:-1])
         meets = [slots[r, c] for bank in self.banks for r in bank.rows for c in bank.columns]
         yield from table(f"{name}_meet", meets)
 
@@ -144,7 +143,6 @@ class _Builder:
         solved = elimination(size, [*pairs, *meets])
         return StepCoupling(
             tuple(found),
-            len(shared),
             sizes,
             self.states,
             len(self.borders),
@@ -179,32 +177,9 @@ class _Builder:
         return Bank(name, states, columns, rows), values
 
 
-def _eliminated(
-    solved: Elimination,
-) -> tuple[list[list[int]], list[list[int]], list[int]]:
-    """Return what each pivot touches: (row, slot) below, (column, slot) right, slots updated."""
-    slots, below, right, updates = solved.slots, [], [], list[int]()
-    for n, rows, columns in zip(solved.order, solved.below, solved.right, strict=True):
-        below.append([k for row in rows for k in (row, slots[row, n])])
-        right.append([k for column in columns for k in (column, slots[n, column])])
-        updates += [slots[row, column] for row in rows for column in columns]
-    return below, right, updates
-
-
-def _first(banks: Sequence[Bank]) -> Iterator[int]:
-    """Yield where the meeting places of each bank begin."""
-    total = 0
-    for bank in banks:
-        yield total
-        total += len(bank.rows) * len(bank.columns)
-
-
 def _ranges(name: str, parts: Sequence[Sequence[int]]) -> Iterator[str]:
     """Yield a table of lists, and where each begins and the last ends."""
-    ends = [0]
-    for part in parts:
-        ends.append(ends[-1] + len(part))
-    yield from table(f"{name}_at", ends)
+    yield from table(f"{name}_at", [*accumulate(map(len, parts), initial=0)])
     yield from table(name, [n for part in parts for n in part])
 
 

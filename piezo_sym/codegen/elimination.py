@@ -23,14 +23,16 @@ class Elimination:
     ----------
     slots : the number of each entry, fill-in included.
     order : the unknowns, first to last.
-    below : of each pivot in order, the rows that have an entry in its column and come later.
-    right : of each pivot in order, the columns that have an entry in its row and come later.
+    below : of each pivot in order, row and slot of each entry in its column that comes later.
+    right : of each pivot in order, column and slot of each entry in its row that comes later.
+    updates : the slots that each pivot changes: its rows below by its columns right, row by row.
     """
 
     slots: dict[Place, int]
     order: tuple[int, ...]
     below: tuple[tuple[int, ...], ...]
     right: tuple[tuple[int, ...], ...]
+    updates: tuple[int, ...]
 
 
 def elimination(size: int, places: Iterable[Place]) -> Elimination:
@@ -54,4 +56,11 @@ def elimination(size: int, places: Iterable[Place]) -> Elimination:
             columns[column].update(below[-1])
     filled = sorted((row, column) for row in range(size) for column in rows[row])
     slots = {place: n for n, place in enumerate(filled)}
-    return Elimination(slots, tuple(order), tuple(below), tuple(right))
+    pivots = tuple(zip(order, below, right, strict=True))
+    return Elimination(
+        slots,
+        tuple(order),
+        tuple(tuple(k for r in below for k in (r, slots[r, n])) for n, below, _ in pivots),
+        tuple(tuple(k for c in right for k in (c, slots[n, c])) for n, _, right in pivots),
+        tuple(slots[r, c] for _, below, right in pivots for r in below for c in right),
+    )

@@ -210,7 +210,7 @@ class _Printer:
             at = places(slots, f"end_{what}", self.made.stage.taken)
             local += ends(at)
             body.append(f"{out}[{n}] = {at.size if slots else 0}; /* {what} */")
-        total = self._at(self.coupling.shared, dict(self.coupling.sizes), None)
+        total = self._at(len(self.coupling.entries), dict(self.coupling.sizes), None)
         body.append(f"{out}[{len(counted)}] = {total}; /* slopes */")
         first, states = len(counted) + 1, range(len(self.program.states))
         body += [f"{out}[{first + n}] = {count}; /* lanes */" for n, count in enumerate(banks)]
