@@ -72,7 +72,7 @@ def test_slopes_are_the_derivative_of_the_rates_on_kept_branches(name, tmp_path)
         1e-2, 2e-2, ends[-1]
     )
     slopes, used = assembled(found(x, found(x, np.ones(8))[0])[2], coupling, rows)
-    assert used == coupling.shared + sum(r * counts[state] for r, state in _lanes(coupling))
+    assert used == len(coupling.entries) + sum(r * counts[state] for r, state in _lanes(coupling))
     for k in range(ends[-1]):
         h = 1e-5 * abs(x[k])
         sides = [x + turn * h * np.eye(ends[-1])[k] for turn in (1, -1)]
