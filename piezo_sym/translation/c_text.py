@@ -33,6 +33,7 @@ _TOKEN = re.compile(
     r"|->|\|\||\+\+|--|\+=|[<>=!]=|[-+*/<>=?:,;(){}\[\]\ue000-\ue0ff]",
     re.ASCII,
 )
+_COMPARED = re.compile(r" (?:if|or|[<>]|[<>=!]=) ")
 _SPELLED = {"||": "or", "->": "."}
 _HEAD = rf'\s*(?:{_COMMENT}\s*)*#include "{{model}}\.h"\s*#include <math\.h>\n\s*'
 _TYPE = r"((?:(?:static|inline|const|double|real|long|int|void|\*|restrict) )+)"
@@ -69,10 +70,11 @@ def python_of(text: str, model: str, macros: str = "", known: Sequence[str] = ()
         place = match.end()
         words += [] if match["space"] else [_SPELLED.get(match[0], match[0])]
         words += [";"] if match[0] in marks else []
-    if macros and "?" in words:
-        raise NotShownError("the C file chooses by ? where there may be many numbers")
+    lines = _lines(" ".join(words), marks)
+    if macros and any(_COMPARED.search(line) for line in lines):
+        raise NotShownError("the C file compares by operators where there may be many numbers")
     try:
-        return ast.parse("\n".join(_lines(" ".join(words), marks)))
+        return ast.parse("\n".join(lines))
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise NotShownError(f"the C file cannot be parsed: {error}") from error
 

@@ -86,6 +86,10 @@ NOT_READ = {
         "is_above(branch_1[j], 0.0)",
         "is_at_least(branch_1[j], 0.0)",
     ),
+    "a choice by an operator": (
+        T,
+        "const real T = chosen(q > 0.0, T_0 + T_minus_T_0, T_0 + T_minus_T_0);",
+    ),
     "a branch at one": ("is_above(branch_2[j], 0.0)", "is_above(branch_2[j], 1.0)"),
     "another choice": (T, "const real T = q > 0.0 ? T_0 + T_minus_T_0 : T_0 + T_minus_T_0;"),
     "a margin that is not written": ("m[0] = T_minus_T_0;", ""),
