@@ -13,7 +13,7 @@ known.
 
 import ast
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
@@ -40,16 +40,24 @@ class Shape:
         "maybe" (lanes, if the parameters of a bank are lists), "lanes", "row" and "column" (lanes
         of the one or other axis of a matrix) and "pair".
     bank, other : of the lanes; of a pair, the row's and the column's.
+    integers : whether it is a choice between equal integers. Only what is real anyway may have it
+        as a part: arrays of integers wrap round, and C divides integers as such.
     """
 
     kind: str = ""
     bank: str = ""
     other: str = ""
+    integers: bool = False
 
     @property
     def is_array(self) -> bool:
         """Whether there is an axis of lanes, or may be."""
         return bool(self.bank)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is of integers."""
+        return self.kind == "whole" or self.integers
 
 
 PLAIN, WHOLE, TEST = Shape(), Shape("whole"), Shape("test")
@@ -106,6 +114,12 @@ class Expressions:
 
     def any(self, node: ast.expr) -> Read:
         """Return an expression that is no condition."""
+        value, shape = self._part(node)
+        if shape.integers:
+            raise refused(node, "a choice of integers")
+        return value, shape
+
+    def _part(self, node: ast.expr) -> Read:
         value, shape = self(node)
         if shape == TEST:
             raise refused(node, "a condition as a number")
@@ -116,7 +130,10 @@ class Expressions:
         return self._real(self.any(node))
 
     def _real(self, read: Read) -> Read:
-        return (self.real(read[0]), PLAIN) if read[1] == WHOLE else read
+        value, shape = read
+        return (
+            (self.real(value), PLAIN) if shape == WHOLE else (value, replace(shape, integers=False))
+        )
 
     def whole(self, node: ast.expr) -> Value:
         """Return an integer: an index or a size."""
@@ -137,14 +154,14 @@ class Expressions:
         field, test, parts = self.field, self.test(condition), list[Read]()
         for chosen, node in ((test, then), (field.one - test, other)):
             with on_path(field, field.path and field.path * chosen):
-                parts.append(self.any(node))
-        if parts[0][1] == parts[1][1] == WHOLE:
-            if parts[0] == parts[1]:
-                return parts[0]
-            raise refused(then, "a choice of integers")
+                parts.append(self._part(node))
         (first, shape), (second, shape_of_other) = map(self._real, parts)
-        shape = joined(shape, shape_of_other, then)
-        return choose(test, first, second), joined(shape, self.shape_of(condition), condition)
+        whole = all(own.is_whole for _, own in parts)
+        if whole and first != second:
+            raise refused(then, "a choice of integers")
+        value = first if whole else choose(test, first, second)
+        shape = joined(joined(shape, shape_of_other, then), self.shape_of(condition), condition)
+        return value, replace(shape, integers=whole)
 
     def shape_of(self, condition: ast.expr) -> Shape:
         """Return the shape of the numbers that a condition compares."""
@@ -168,12 +185,16 @@ class Expressions:
         while isinstance(node, ast.BinOp):
             rest.append(node)
             node = node.left
-        made = self.any(node)
+        made = self._part(node)
         for part in reversed(rest):
-            made = self._operation(made, part.op, self.any(part.right), part)
+            made = self._operation(made, part.op, self._part(part.right), part)
         return made
 
     def _operation(self, left: Read, operator: ast.operator, right: Read, node: ast.expr) -> Read:
+        if left[1].integers or right[1].integers:
+            if left[1].is_whole and right[1].is_whole:
+                raise refused(node, "a choice of integers")
+            left, right = self._real(left), self._real(right)
         shape = joined(left[1], right[1], node)
         if shape != WHOLE or isinstance(operator, ast.Div):
             left, right = self._real(left), self._real(right)

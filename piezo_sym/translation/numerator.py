@@ -12,6 +12,7 @@ from operator import neg, sub
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from piezo_sym.translation.field import NotShownError, Value
+from piezo_sym.translation.signs import has_sign
 
 MOST_TERMS = 200_000
 #: Number of terms that a product of two polynomials may have before equal ones are joined.
@@ -82,6 +83,11 @@ class _Roots:
                 found = self.written_out(found, g)
         return found
 
+    def have_roots(self, value: fmpq_mpoly) -> bool:
+        """Return whether roots of sums are left in a polynomial: they are not independent."""
+        found = zip(self.order, value.degrees(), strict=True)
+        return any(degree and self.gens[g].kind in {"power", "letter"} for g, degree in found)
+
 
 def vanishes(value: Value) -> bool:
     """Return whether a value's numerator has no terms, its generators taken as independent.
@@ -94,10 +100,25 @@ def vanishes(value: Value) -> bool:
 
 
 def vanishes_with(value: Value, other: Value) -> bool:
-    """Return whether a value is shown to be zero where another is: a multiple of its numerator."""
-    roots = _Roots(value, other)
-    above, below = (roots.numerator(one, ("power", "letter")) for one in (value, other))
-    return not below.is_zero() and bool(divmod(above, below)[1].is_zero())
+    """Return whether a value is shown to be zero where another is: a multiple of its numerator.
+
+    A denominator may be zero there only where it is so at single points: 0/0 is not 0.
+    """
+    roots, kinds = _Roots(value, other), ("power", "letter")
+    above, below = (roots.numerator(one, kinds) for one in (value, other))
+    if below.is_zero() or not divmod(above, below)[1].is_zero():
+        return False
+    apart = (d for d in divisors(value) if d.parts & other.parts and not has_sign(d))
+    found = [roots.numerator(d, kinds) for d in apart]
+    if any(roots.have_roots(one) for one in (above, below, *found)):  # these depend on each other
+        return not found
+    return all(one.gcd(below).is_one() for one in found)
+
+
+def divisors(value: Value) -> list[Value]:
+    """Return the generators by which the terms of a value are divided."""
+    found = {g for mono in value.terms for g, e in mono if e < 0}
+    return [value.field.raised(g, 1) for g in sorted(found)]
 
 
 def _product(left: fmpq_mpoly, right: fmpq_mpoly) -> fmpq_mpoly:

@@ -13,7 +13,7 @@ from itertools import product
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import power
-from piezo_sym.translation.numerator import vanishes, vanishes_with
+from piezo_sym.translation.numerator import divisors, vanishes, vanishes_with
 from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
 
 MOST_CASES = 500
@@ -209,6 +209,8 @@ def _differs(base: Value, case: Case) -> bool:
         if vanishes_with(value, d):
             return False
         new = _solved(d)
+        if any(vanishes(put(divisor, new), ("power", "letter")) for divisor in divisors(value)):
+            return True  # 0/0 on the edge
         value = put(value, new)
         edges = {put(other, new): 0 for other in edges}
         others = {put(other, new): side for other, side in others.items()}

@@ -11,6 +11,14 @@ from tests.translation.printed import printed, rows
 from tests.translation.test_program import SPECS
 
 NUMPY = {
+    "a power of a choice of integers that wraps round": (
+        "out[0] = v_mass\n",
+        "out[0] = v_mass + M - M*(np.where(M > 0, 3000000, 3000000)**3/27e18)\n",
+    ),
+    "lanes that are a choice of integers": (
+        "out[0] = v_mass\n",
+        "out[0] = v_mass*np.where(i_0 > 0, 1, 1)\n",
+    ),
     "a name that the readers know": ("import numpy as np", "import numpy as np\nnp.exp = np.sin"),
     "another module": ("import numpy as np", "import numpy as np, os"),
     "a default that is computed": ("x, u, p_, out, /):", "x, u, p_, out=print(), /):"),
@@ -150,6 +158,29 @@ def test_what_only_the_print_divides_by_is_open(made, factor):
 def test_a_quotient_is_needed_only_where_it_is_chosen(made):
     chosen = "out[0] = np.where(S > 0, np.where(S > 0, v_mass*(S/S), S/S), v_mass)\n"
     assert row(made, "NumPy", "out[0] = v_mass\n", chosen) is None
+
+
+@pytest.mark.parametrize(
+    "one", ["np.where(S > 0, 1, 1)", "np.where(S > 0, 1/S*S, np.where(S < 1, 1, 1))"]
+)
+def test_a_choice_of_equal_integers_is_read_where_the_rest_is_real(made, one):
+    assert row(made, "NumPy", "out[0] = v_mass\n", f"out[0] = v_mass*{one}\n") is None
+
+
+@pytest.mark.parametrize(
+    "chosen",
+    [
+        "q == S, 0, v_mass*(q - S)/(q - S)",
+        "q == 1, 0, v_mass*(q - 1)/(q - 1)",
+        "q**2 == S, 0, v_mass*(q**2 - S)/(q**2 - S)",
+        "q == np.exp(S), 0, v_mass*(q - np.exp(S))/(q - np.exp(S))",
+        "S == 1, np.where(q == S, 0, v_mass), v_mass*(S - 1)/(S - 1)",
+    ],
+)
+def test_what_is_zero_by_zero_on_an_edge_is_not_what_it_is_beside_it(made, chosen):
+    """A module with 0 there was proved: the difference is a multiple of q - S, over q - S."""
+    found = row(made, "NumPy", "out[0] = v_mass\n", f"out[0] = np.where({chosen})\n")
+    assert found.verdict is Verdict.OPEN
 
 
 @pytest.mark.parametrize(
