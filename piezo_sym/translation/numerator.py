@@ -102,7 +102,7 @@ def vanishes(value: Value) -> bool:
 def vanishes_with(value: Value, other: Value) -> bool:
     """Return whether a value is shown to be zero where another is: a multiple of its numerator.
 
-    A denominator may be zero there only where it is so at single points: 0/0 is not 0.
+    None of its denominators is zero wherever the other is: 0/0 is not 0.
     """
     roots, kinds = _Roots(value, other), ("power", "letter")
     above, below = (roots.numerator(one, kinds) for one in (value, other))
@@ -116,8 +116,13 @@ def vanishes_with(value: Value, other: Value) -> bool:
 
 
 def divisors(value: Value) -> list[Value]:
-    """Return the generators by which the terms of a value are divided."""
-    found = {g for mono in value.terms for g, e in mono if e < 0}
+    """Return the generators by which a value is divided, its sums and letters written out."""
+    gens, found, left = value.field.gens, dict[int, None](), [value]
+    while left:
+        for g, e in {factor for mono in left.pop().terms for factor in mono}:
+            arg = gens[g].arg
+            found |= {g: None} if e < 0 else {}
+            left += [arg] if arg and gens[g].kind in {"power", "letter"} else []
     return [value.field.raised(g, 1) for g in sorted(found)]
 
 

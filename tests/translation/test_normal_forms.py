@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from piezo_sym.translation.change import spelled
 from piezo_sym.translation.expressions import PLAIN, Expressions
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
-from piezo_sym.translation.numerator import vanishes
+from piezo_sym.translation.numerator import vanishes, vanishes_with
 from piezo_sym.translation.witness import UNDECIDED, WitnessPoint
 
 SMOOTH = ("exp", "log", "sqrt", "sin", "cos", "tanh", "expm1", "atan", "sinh", "cosh", "erf")
@@ -134,3 +134,23 @@ def test_a_numerator_has_no_terms_where_the_product_with_all_denominators_has_no
     except NotShownError:
         assume(False)
     assert vanishes(value) == expected
+
+
+@pytest.mark.parametrize("abbreviated", [False, True])
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("(x - y)*exp(x)/(x*y + 1)", True),
+        ("(x - y)*sqrt(x + y)/a", True),
+        ("x**3 - y**3", True),
+        ("(x - y)*exp(x)/(x - y)", False),
+        ("(x - y)/(x**2 - y**2)", False),
+        ("(x - y)/(1 - sqrt(1 + x - y))", False),
+        ("(x - y)*(a*(x - y) + 1/b)/(x - y)**2", False),
+    ],
+)
+def test_what_vanishes_with_a_difference_is_not_divided_by_it(text, shown, abbreviated):
+    field, read = reader()
+    value, other = (read.numeric(ast.parse(t, mode="eval").body)[0] for t in (text, "x - y"))
+    value = field.generator("letter", value) if abbreviated else value
+    assert vanishes_with(value, other) == shown
