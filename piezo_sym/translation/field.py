@@ -142,7 +142,8 @@ class GeneratorField:
     states : the names by which derivatives are taken.
     signed : generators that are positive (2) or not negative (1).
     assumed : other values of which the domain says the same.
-    signs, forms, factors, never : results kept by `signs` and `zero`.
+    signs, forms, factors, never, asked : results kept by `signs`, `zero` and `possible`.
+    unknown : how often a solver gave no answer.
     work : how many products of two terms were formed.
     """
 
@@ -162,6 +163,8 @@ class GeneratorField:
         self.forms: dict[Value, tuple[list[Value], int]] = {}
         self.factors: dict[Value, list[tuple[Value, int]]] = {}
         self.never: dict[tuple[Value, int, Value, int], bool] = {}
+        self.asked: dict[frozenset[tuple[Value, int]], bool] = {}
+        self.unknown = 0
 
     # Generators
 

@@ -59,26 +59,7 @@ def _sign(value: Value) -> int:
     if min(found) > 0:
         return max(found)
     rest = primitive(value, partly=True)[2] if len(value.terms) > 1 else value
-    if rest in value.field.assumed:
-        return value.field.assumed[rest]
-    least = _least(value)
-    return 0 if least == value else sign(least)
-
-
-def _least(value: Value) -> Value:
-    """Return a lower bound of a value: bounded functions, as cos, are at the end that is less."""
-    field, parts = value.field, list[Value]()
-    for mono, c in value.terms.items():
-        for n, (g, e) in enumerate(mono):
-            bounds = RECORDS[gen.kind].bounds if (gen := field.gens[g]).kind in RECORDS else ()
-            end = next(iter(bounds[:1] if c > 0 else bounds[1:]), None)
-            rest = mono[:n] + mono[n + 1 :]
-            if e == 1 and isinstance(end, Fraction) and _sign_of_term(field, rest, 1):
-                parts.append(Value(field, {rest: c * end}))
-                break
-        else:
-            parts.append(Value(field, {mono: c}))
-    return field.total(parts)
+    return value.field.assumed.get(rest, 0)
 
 
 def _sign_of_term(field: GeneratorField, mono: Mono, c: Exponent) -> int:
@@ -108,14 +89,14 @@ def reading(field: GeneratorField, function: str) -> Iterator[None]:
     if function not in {"margins", "integrands"}:
         yield
         return
-    kept = field.signed, field.assumed, field.signs, field.forms, field.never
+    kept = field.signed, field.assumed, field.signs, field.forms, field.never, field.asked
     counts = (g for g, gen in enumerate(field.gens) if gen.kind == "name" and _counts(gen))
     field.signed, field.assumed = dict.fromkeys(counts, 2), {field.zero: 1}
-    field.signs, field.forms, field.never = {}, {}, {}
+    field.signs, field.forms, field.never, field.asked = {}, {}, {}, {}
     try:
         yield
     finally:
-        field.signed, field.assumed, field.signs, field.forms, field.never = kept
+        field.signed, field.assumed, field.signs, field.forms, field.never, field.asked = kept
 
 
 def _counts(gen: Generator) -> bool:

@@ -14,6 +14,7 @@ from piezo_sym.translation.change import put
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import power
 from piezo_sym.translation.numerator import divisors, vanishes, vanishes_with
+from piezo_sym.translation.possible import impossible
 from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
 
 MOST_CASES = 500
@@ -131,9 +132,15 @@ def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, edges: Edges
 
 def _common(cases: list[Case]) -> Value | None:
     """Return the value that all possible cases share, or None if that is not shown."""
-    if not cases or any(_differs(cases[0][0], case) for case in cases[1:]):
-        return None
-    return cases[0][0]
+    while cases:
+        (base, sides), *rest = cases
+        wrong = [case for case in rest if _differs(base, case)]
+        if all(impossible(case[1]) for case in wrong):
+            return base
+        if not impossible(sides):
+            return None
+        cases = rest
+    return None
 
 
 def _cases(
@@ -209,7 +216,7 @@ def _differs(base: Value, case: Case) -> bool:
         if vanishes_with(value, d):
             return False
         new = _solved(d)
-        if any(vanishes(put(divisor, new), ("power", "letter")) for divisor in divisors(value)):
+        if any(vanishes(put(divisor, new)) for divisor in divisors(value)):
             return True  # 0/0 on the edge
         value = put(value, new)
         edges = {put(other, new): 0 for other in edges}
