@@ -119,7 +119,9 @@ class CFunction:
                 self._block(self.scope.block(), body)
             case ast.Return(ast.expr() as value):
                 self._return(value)
-            case ast.Pass() | ast.Expr(ast.Name()):
+            case ast.Expr(ast.Name(name)) if name in self.scope.roles:  # (void)u;
+                pass
+            case ast.Pass():
                 pass
             case _:
                 raise refused(node, "a statement")
