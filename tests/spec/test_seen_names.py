@@ -123,7 +123,10 @@ def test_a_lane_sees_its_own_state():
 
 @pytest.mark.parametrize(
     ("law", "part"),
-    [("rho/T_0*i*(1 + F_ext)", "'F_ext' is an input, and this law sees none"), ("rho/T_0*i*T_mount", "'T_mount'")],
+    [
+        ("rho/T_0*i*(1 + F_ext)", "'F_ext' is an input, and this law sees none"),
+        ("rho/T_0*i*T_mount", "'T_mount'"),
+    ],
 )
 def test_inputs_and_bodies_that_are_not_there_are_unknown(law, part):
     assert part in refused_edit((VOLTAGE, f'voltage = "{law}"'))
