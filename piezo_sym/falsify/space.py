@@ -32,7 +32,9 @@ LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
 #: A power with a smaller exponent hardly changes over tens of decades of its base.
 STEEP = 0.01
 #: States times points that the module evaluates together; its `rhs` splits larger arrays.
-BLOCK = 300_000
+BLOCK = 100_000
+#: States times points at which trees are evaluated together: calls of NumPy cost less per point.
+TREES = 3 * BLOCK
 #: Of large systems fewer points together would cost as much; and points times columns squared.
 FEWEST, MOST = 1024, 10**9
 
@@ -100,7 +102,7 @@ class Space:
     @cached_property
     def block(self) -> int:
         """How many points are evaluated together."""
-        return max(FEWEST, min(8192, BLOCK // max(1, len(self.columns) - self.states_at)))
+        return max(FEWEST, min(8192, TREES // max(1, len(self.columns) - self.states_at)))
 
     @cached_property
     def most(self) -> int:
