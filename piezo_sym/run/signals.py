@@ -170,9 +170,19 @@ class Ramp(Signal):
         return self.start, self.stop
 
 
+@dataclass(frozen=True)
+class _Wave(Signal):
+    """What is said of a periodic signal: its amplitude, frequency and offset."""
+
+    amplitude: float
+    frequency: float
+    offset: float = 0.0
+    _above_zero = ("frequency",)
+
+
 @final
 @dataclass(frozen=True)
-class Triangle(Signal):
+class Triangle(_Wave):
     """A triangle wave that starts at `offset`, rising, and reaches offset +- amplitude.
 
     Parameters
@@ -184,11 +194,6 @@ class Triangle(Signal):
     ------
     UsageError : a number is not finite, or the frequency not positive.
     """
-
-    amplitude: float
-    frequency: float
-    offset: float = 0.0
-    _above_zero = ("frequency",)
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         turns = self.frequency * np.asarray(t) + 0.25
@@ -209,7 +214,7 @@ class Triangle(Signal):
 
 @final
 @dataclass(frozen=True)
-class Square(Signal):
+class Square(_Wave):
     """A square wave: offset + amplitude in the first half of each period, then offset - amplitude.
 
     Parameters
@@ -221,11 +226,6 @@ class Square(Signal):
     ------
     UsageError : a number is not finite, the frequency not positive, or it jumps too often in a run.
     """
-
-    amplitude: float
-    frequency: float
-    offset: float = 0.0
-    _above_zero = ("frequency",)
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         jumps = 2 * self.frequency
