@@ -323,4 +323,4 @@ def test_a_solver_that_never_ends_its_line_is_stopped():
         talker.ask(Query("never", (), (), Cmp("<", Num(Fraction(1)), Num(Fraction(0))))).result
         == "unknown"
     )
-    assert time.monotonic() - started < 20
+    assert time.monotonic() - started < 60

@@ -2,7 +2,6 @@
 
 import json
 import os
-import time
 import tomllib
 from collections import Counter
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import pytest
 import tomli_w
 
+from tests.clock import within
 from tests.search import __main__ as program
 from tests.search.judge import judge
 from tests.search.laws import read, text
@@ -216,12 +216,11 @@ def test_a_spec_is_made_small():
 
 
 def test_no_verdict_of_a_small_slice_is_false(prover):
-    began = time.process_time()
-    record = slice_of(0, prover, specs=2, laws=5)
+    with within(10):
+        record = slice_of(0, prover, specs=2, laws=5)
     assert [f for f in record["faults"] if f["kind"] in BAD] == []
     assert sum(n for name, n in record["counts"].items() if name.endswith("PROVED")) > 10
     assert sum(n for name, n in record["counts"].items() if name.endswith("REFUTED")) > 2
-    assert time.process_time() - began < 5
 
 
 @pytest.mark.parametrize("path", FOUND, ids=lambda path: path.stem)
