@@ -97,6 +97,9 @@ class _Reader:
         need(bool(self.kinds), "no elements")
         self.bodies = [name for name, kind in self.kinds.items() if kind.form == "body"]
         banked = {n: e for n, e in tables["elements"].items() if "count" in e}
+        self.joined = {n: banked.pop(n)["count"] for n in (*banked,) if self._joins(n)}
+        counts = (isinstance(n, int) and n >= 1 for n in self.joined.values())
+        need(all(counts), "a count is no whole number above 0")
         self.lanes = {("x", n): (e.get("bank", n), e["count"]) for n, e in banked.items()}
         single = len({*self.lanes.values()}) == len(dict(self.lanes.values()))
         single &= all(n == b or b not in self.kinds for (_, n), (b, _) in self.lanes.items())
@@ -110,6 +113,11 @@ class _Reader:
         conditions = tuple(dict.fromkeys(self._conditions(initial)))
         tables = (self.parameters, self.inputs, self.words, self.states, self.elements)
         return Spec(*tables, initial, conditions, self._lists(conditions), self.faults)
+
+    def _joins(self, name: str) -> bool:
+        """Return whether those of an element that are in parallel have one state."""
+        kind, entry = self.kinds[name], self.tables["elements"][name]
+        return kind.form == "store" and kind.across and not {"slip", "bank", "series"} & {*entry}
 
     def _values(self, table: str, field: str, role: str) -> dict[str, tuple[Fraction, ...]]:
         found = {}
@@ -161,6 +169,9 @@ class _Reader:
         field = next(reversed(own), "")
         dissipates = kind.form in ("law", "hysteron") or field == "slip"
         costate = self._costate(name, own)
+        if count := self.joined.get(name):  # U(x) = count*U_j(x/count)
+            share = Node("/", (sym(("x", name)), num(count)))
+            costate = costate and laws.put(costate, {("x", name): share})
         law, letter = (own[field], next(iter(kind.laws[field][1]))) if dissipates else (None, "")
         across = kind.across and (kind.form != "law" or field == next(iter(kind.laws)))
         source, lanes = entry.get("input", ""), self.lanes.get(("x", name))
@@ -258,11 +269,12 @@ class _Reader:
         """Return where a state starts, in each lane: texts have units, numbers are in SI."""
         words = {word: meaning for word, meaning in self.words.items() if meaning[0] in "pu"}
         given, needed = self.tables["initial"][state], self.units["x", self.states[state]]
-        trees = list[Node]()
+        trees, count = list[Node](), num(self.joined.get(self.states[state], 1))
         for start in given if isinstance(given, list) else [given]:
             text = isinstance(start, str)
             trees.append(self._resolved(start, words) if text else num(Fraction(start)))
             self.faults += faults(trees[-1], self.units, needed if text else None, "initial")
+            trees[-1] = Node("*", (count, trees[-1]))
         return tuple(trees)
 
     def _lists(self, conditions: tuple[Node, ...]) -> dict[str, str]:

@@ -61,7 +61,8 @@ def _elements(model: Model) -> None:
     made = table("Elements", "name", "kind", "where", "laws and values (SI)", "state at t = 0")
     for name, element in model.elements.items():
         laws = "\n".join(_laws(model, name, element))
-        row(made, name, element.kind, _where(element), laws, _starts(model, name, element))
+        kind = f"{element.kind}, {element.joined} joined" if element.joined > 1 else element.kind
+        row(made, name, kind, _where(element), laws, _starts(model, name, element))
     console().print(made)
     made = table("Inputs", "name", "unit", "if not given", "what it is")
     used = inputs_of(model.elements.values())
@@ -100,7 +101,10 @@ def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
 
 def _starts(model: Model, name: str, element: Element) -> str:
     symbols = [state.symbol for state in element.own_states(name)]
-    return "\n".join(f"{one} = {model.initial.get(one, '0 (not said)')}" for one in symbols)
+    starts = {one: str(model.initial.get(one, "0 (not said)")) for one in symbols}
+    given = [one for one in starts if one in model.joined and one in model.initial]
+    sums = {one: f"{model.joined[one]}*({starts[one]})" for one in given}
+    return "\n".join(f"{one} = {start}" for one, start in (starts | sums).items())
 
 
 def _equations(iphs: IPHS) -> Iterator[str]:

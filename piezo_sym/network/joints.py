@@ -252,7 +252,7 @@ def _check_starts(model: Model, joint: Joint) -> None:
             there = sum(terms) * evaluate(member.compliance, values) + evaluate(member.rest, values)
             what = f"{quote(member.element)} is joined, and starts with {store.costate} = {found:g}"
             expected = f"{sum(terms):g} {store.units[1]}, as {given}"
-            remedy = f"give {store.state} = {there:.12g}"
+            remedy = f"give {store.state} = {there / model.joined.get(store.state, 1):.12g}"
             raise SpecError(what, f"initial.{store.state}", expected, remedy)
 
 

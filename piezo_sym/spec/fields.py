@@ -7,6 +7,7 @@ Input: TOML data or Python arguments.  Output: `Header`, `Parameter`, `Input`, `
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Annotated, Any, Union, final
 
 from pydantic import (
@@ -227,3 +228,9 @@ class Tables(Frozen):
     components: Table[Component] = Table()
     elements: Table[AnyElement] = Table()
     banks: Table[Bank] = Table()
+
+    @cached_property
+    def joined(self) -> dict[str, int]:
+        """How many stores are joined into each state that `count` makes of several."""
+        several = ((name, e) for name, e in self.elements.items() if e.joined > 1)
+        return {s.symbol: e.joined for name, e in several for s in e.own_states(name)}

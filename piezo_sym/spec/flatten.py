@@ -207,6 +207,9 @@ def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any]
             _check(element, place, where)
             node = partial(_node, bank, outside | {*(table.series or ())}, place)
             more = {"bank": bank, "count": table.count, "series": table.series}
+            shared = {node for _, node in element.named("node")} <= {*REFERENCES, *outside}
+            if shared and element.row.form.joins(element):
+                more = {"count": table.count}  # those of all cells have one across variable
             fields = Renaming({}, node=node).fields(element, name)
             yield f"{bank}_{name}", fields | more, place
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.expressions.calculus import increasing
+from piezo_sym.expressions.calculus import increasing, mul
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import SPEC, write_comparison
@@ -39,13 +39,18 @@ def states(spec: Tables) -> dict[str, str]:
 
 
 def starts(spec: Tables, symbol: str) -> tuple[Expr, ...]:
-    """Return the initial value of a state, one or one per lane where lanes differ."""
+    """Return the initial value of a state, one or one per lane where lanes differ.
+
+    A state that is the sum of those of alike stores starts at the sum of their initial values.
+    """
     start = spec.initial.get(symbol, 0.0)
     parts = start if isinstance(start, tuple) else (start,)
-    return tuple(
+    trees = tuple(
         parse_law(part, f"initial.{symbol}") if isinstance(part, str) else Num(Fraction(repr(part)))
         for part in parts
     )
+    count = spec.joined.get(symbol)
+    return tuple(mul(Num(Fraction(count)), tree) for tree in trees) if count else trees
 
 
 def bodies(spec: Tables) -> tuple[str, ...]:

@@ -118,14 +118,6 @@ def test_good_sizes_of_banks(count):
     assert edited(("count = 2", f"count = {count}")).elements["hysteron"].count == int(count)
 
 
-def test_what_shares_a_velocity_is_one_mass():
-    message = refused_edit(('kind = "mass"', 'kind = "mass"\ncount = 2'))
-    assert message == (
-        "spec: elements.mass.count: count is given, and those in parallel have one velocity; "
-        "expected one mass; give the mass of all, their sum"
-    )
-
-
 def test_a_source_has_no_size():
     message = refused_edit(('kind = "force_source"', 'kind = "force_source"\ncount = 2'))
     assert message == ("spec: elements.load.count: unknown key 'count'; known: kind, at, input")

@@ -97,7 +97,8 @@ def _check_banks(spec: Tables) -> None:
                 raise SpecError(what, f"{where}.{field}", f"{other}, not {given}")
     for name, element in spec.elements.items():
         for field in ("bank", "series"):
-            if getattr(element, field, None) is not None and element.bank_of(name) is None:
+            alone = getattr(element, "count", None) is None
+            if getattr(element, field, None) is not None and alone:
                 raise SpecError(f"{field} is given without count", f"elements.{name}", "both")
 
 

@@ -83,6 +83,8 @@ def _check_lists(spec: Tables) -> None:
         where, count = f"parameters.{name}.value", len(parameter.value)
         if name not in owners:
             remedy = "give one number, or use the parameter in the laws of one bank only"
+            if spec.joined:
+                remedy += "; what count joins is alike: give different ones as elements"
             raise SpecError("a list is given", where, "one number", remedy)
         if count != sizes[owners[name]]:
             expected = f"{sizes[owners[name]]}, one for each lane of bank '{owners[name]}'"

@@ -35,7 +35,9 @@ from piezo_sym.spec.write import inline
 
 _LANES = (
     "With `count` it is a bank of lanes j = 1..count: in parallel; in series if they give an "
-    "across variable, as capacitors that slip, or stand in a chain between the nodes `series`."
+    "across variable, as capacitors that slip, or stand in a chain between the nodes `series`. "
+    "Parallel stores of one across variable, as masses or capacitors, are joined: one state, the "
+    "sum of theirs, which starts at `count` times `initial`."
 )
 ACROSS, ENTROPY_UNIT = PowerVariable.ACROSS, "J/K"
 #: A place in an element, what is wrong there, what is expected, and the remedy.
@@ -81,6 +83,7 @@ class Form:
     requires : the conditions that an element called `name` adds to the domain.
     starts : the conditions on where its states start.
     has_lanes : whether it may stand for many of its kind, a bank.
+    joins : whether many of an element are joined into one, and no bank.
     ratios : of a coupling, the domains that it couples and the unit of its ratio.
     """
 
@@ -95,6 +98,7 @@ class Form:
     requires: Callable[[Any, str], tuple[Cmp, ...]] = lambda *_: ()
     starts: Callable[[Any, str], tuple[Cmp, ...]] = lambda *_: ()
     has_lanes: bool = False
+    joins: Callable[[Any], bool] = lambda _: False
     ratios: tuple[tuple[PhysicalDomain, PhysicalDomain, str], ...] = ()
 
 
@@ -183,15 +187,20 @@ class Element(Frozen):
     def bank_of(self, name: str) -> str | None:
         """Return the bank that this element, called `name`, has one lane of: its own, or a cell's.
 
-        None where no `count` is given; a count of 1 is a bank, too.
+        None where no `count` is given, or all are joined; a count of 1 is a bank, too.
         """
-        given = getattr(self, "count", None) is not None
+        given = getattr(self, "count", None) is not None and not self.row.form.joins(self)
         return (getattr(self, "bank", None) or name) if given else None
+
+    @property
+    def joined(self) -> int:
+        """How many alike are joined into this one."""
+        return (getattr(self, "count", None) or 1) if self.row.form.joins(self) else 1
 
     @property
     def chain(self) -> Branch | None:
         """The ends of the chain in which its lanes stand one after the other, if they do."""
-        if getattr(self, "count", None) is None:
+        if self.bank_of("") is None:
             return None
         alone = getattr(self, "bank", None) is None
         across = (p for p in self.ports("") if isinstance(p, Storage) and p.imposes is ACROSS)

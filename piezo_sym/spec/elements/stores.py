@@ -8,12 +8,13 @@ the rate projected on |effort| <= limit.
 """
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any, final
 
-from piezo_sym.expressions.calculus import add, neg
+from piezo_sym.expressions.calculus import add, div, inserted, mul, neg
 from piezo_sym.expressions.energies import slope, without_common_factors
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Sym, rename
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Num, Sym, rename
 from piezo_sym.spec.elements.base import Fault, Form, positive, state_symbol
 from piezo_sym.spec.elements.domains import PhysicalDomain, PhysicalVariable, PowerVariable
 from piezo_sym.spec.elements.forms import placed, places, said
@@ -72,6 +73,8 @@ def store(own: Size) -> Form:
             law, energy = slope(law, state), law
         elif field == own.size:
             law = without_common_factors(_costate(own, element, state), state)
+        if element.joined > 1:
+            law, energy = _of_all(law, energy, state, element.joined)
         port = replace(_storage(own, element, name, branch, law), energy=energy)
         slips = getattr(element, "slip", None) is not None
         return _slipping(own, element, port, name) if slips else (port,)
@@ -95,6 +98,7 @@ def store(own: Size) -> Form:
         fault=lambda element: _fault(own, element),
         requires=requires,
         has_lanes=True,
+        joins=lambda element: _joins(own, element),
     )
 
 
@@ -240,17 +244,36 @@ def _projected(own: Size, limit: Expr) -> Expr:
     return If(If(v, forth, ZERO), Cmp(">", v, ZERO), If(v, back, ZERO))
 
 
+def _joins(own: Size, element: Any) -> bool:
+    """Return whether many of an element have one across variable, and so one state."""
+    across = own.imposes is PowerVariable.ACROSS and element.bank is None
+    return across and getattr(element, "slip", None) is None
+
+
+def _of_all(law: Expr, energy: Expr | None, state: str, count: int) -> tuple[Expr, Expr | None]:
+    """Return the law and energy of alike stores of one co-state: each has its share of the state.
+
+    x = count*x_j and U(x) = count*U_j(x/count), so that dU/dx is the co-state of each.
+    """
+    number = Num(Fraction(count))
+    share = {state: div(Sym(state), number)}
+    if isinstance(law, Div) and law.left == Sym(state):
+        law = Div(law.left, mul(number, inserted(law.right, share)))
+    else:
+        law = inserted(law, share)
+    return law, energy and mul(number, inserted(energy, share))
+
+
 def _fault(own: Size, element: Any) -> Fault | None:
-    """Return that slip and heat, or rest and stiffness, belong together, or lanes are one."""
+    """Return that slip and heat, or rest and stiffness, belong together."""
     slip = getattr(element, "slip", None)
     if own.slips and (slip is None) != (element.heats is None):
         given, other = ("heats", "slip") if slip is None else ("slip", "heats")
         remedy = f"add {other} = '...', or leave {given} out"
         return f".{given}", f"{given} is given without {other}", "both or none", remedy
-    alike = own.imposes is PowerVariable.ACROSS and not element.bank and slip is None
-    if alike and element.count is not None:
-        what = f"count is given, and those in parallel have one {own.out.word}"
-        return ".count", what, f"one {element.kind}", f"give the {own.size} of all, their sum"
+    if _joins(own, element) and element.series is not None and element.count is not None:
+        what = f"those that count joins have one {own.out.word}, and series is given"
+        return ".series", what, "count alone", "leave series out"
     if own.stiff and getattr(element, own.size) is None and element.rest != "0":
         given = own.out.name if element.energy is None else "energy"
         remedy = f"write {own.out.state_letter} - ({element.rest}) in the law, and leave rest out"
