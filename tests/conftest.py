@@ -3,6 +3,7 @@
 import os
 import resource
 import shutil
+import signal
 import sys
 from contextlib import contextmanager
 
@@ -11,6 +12,9 @@ from hypothesis import settings
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
+
+# Where pytest runs in the background of a shell, SIGINT is ignored, by all that tests start, too.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
