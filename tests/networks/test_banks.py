@@ -191,7 +191,6 @@ REFUSED = [
     ('stiffness = "k"', 'force = "k*q_c"', "elements.spring.force: unknown name 'q_c'; it is"),
     ('stiffness = "k"', 'stiffness = "k_c"', "parameters.k_c.value: a list is given; expected"),
     ("[2.0", "[-2.0", "domain.assume[0]: the values given are outside the domain: d_c = -2"),
-    ('mass = "m"', 'mass = "m", count = 2', "elements.mass.count: count is given, and those in"),
     ('"k", st', '"k", bank = "x", st', "elements.spring: bank is given without count; expected"),
 ]
 
