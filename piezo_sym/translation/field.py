@@ -120,13 +120,15 @@ class Value:
 class Need:
     """A condition on `value` where `path` is 1: nonzero, nonnegative or positive, as `kind` says.
 
-    `derived` says that only derivatives need it.
+    `derived` says that only derivatives need it, `outside` that it is needed outside the domain,
+    too.
     """
 
     kind: str
     value: Value
     path: Value
     derived: bool = False
+    outside: bool = False
 
 
 @final
@@ -138,6 +140,7 @@ class GeneratorField:
     gens : the generators; values refer to them by index.
     path : a product of signs, 1 where the branch being read is taken; None to collect no needs.
     derived : whether a derivative is being read.
+    outside : whether what is being read holds outside the domain, too.
     needs : the conditions of the divisions, roots and logarithms read so far.
     states : the names by which derivatives are taken.
     signed : generators that are positive (2) or not negative (1).
@@ -154,7 +157,7 @@ class GeneratorField:
         self.work = 0
         self.zero, self.one = Value(self, {}), Value(self, {(): 1})
         self.path: Value | None = self.one
-        self.derived = False
+        self.derived = self.outside = False
         self.needs: dict[Need, None] = {}
         self.states: frozenset[int] = frozenset()
         self.signed: dict[int, int] = {}

@@ -96,13 +96,13 @@ def _needs(kind: str, value: Value) -> None:
     field, enough = value.field, 2 if kind != "nonnegative" else 1
     below = kind == "nonzero" and sign(-value) == 2
     if field.path is not None and sign(value) < enough and not below:
-        field.needs[Need(kind, value, field.path, field.derived)] = None
+        field.needs[Need(kind, value, field.path, field.derived, field.outside)] = None
 
 
 def _undefined(field: GeneratorField, kind: str) -> Value:
     """Return 1/0 or log(0): a name of which nothing is known; where it is chosen, it is missed."""
     if field.path is not None:
-        field.needs[Need(kind, field.zero, field.path, field.derived)] = None
+        field.needs[Need(kind, field.zero, field.path, field.derived, field.outside)] = None
     return field.generator("name", None, (f"not {kind}", None, 0))
 
 

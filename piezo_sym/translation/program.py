@@ -148,14 +148,21 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
     for need in needs:
         value = _in_first_lane(need.value)
         op = {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<=")
-        fails = compare(op, value, field.zero)
-        left = _in_first_lane(need.path) * fails
-        for given in allowed.get(value, ()):
-            if {given.kind} in _ENOUGH[need.kind] and (need.derived or not given.derived):
-                left = left * (field.one - given.path)
-        if not is_zero(left):
+        with reading(field, "margins" if need.outside else ""):
+            fails = compare(op, value, field.zero)
+            left = _in_first_lane(need.path) * fails
+            for given in allowed.get(value, ()):
+                if {given.kind} in _ENOUGH[need.kind] and _covers(given, need):
+                    left = left * (field.one - given.path)
+            met = is_zero(left)
+        if not met:
             where = "jacobian" if need.derived else "code"
             yield f"{where} needs a value to be {need.kind} that is not shown to be so"
+
+
+def _covers(given: Need, need: Need) -> bool:
+    """Return whether a need of laws is one wherever printed code has it."""
+    return (need.derived or not given.derived) and (given.outside or not need.outside)
 
 
 def _in_first_lane(value: Value) -> Value:

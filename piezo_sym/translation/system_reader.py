@@ -105,6 +105,7 @@ class SystemReader:
         found = {name: self.costates.get(name, self.names.get(name)) for name in used}
         unsigned = {name: sp.Dummy(name, real=True) for name, value in found.items() if value}
         self.known |= {letter: found[name] for name, letter in unsigned.items()}
+        self._forget()
         with reading(self.field, "margins"):
             yield unsigned
         self._forget()

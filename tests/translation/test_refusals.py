@@ -60,12 +60,14 @@ NUMPY = {
         "zz = p + S + M + k + d + C + a\n"
         "    out[0, 1] = np.where(zz == p + S + M + k + d + C + a, 7, 1/M)\n",
     ),
+    "a margin that is nan outside": ("out[7] = M\n", "out[7] = np.sqrt(M)**2\n"),
     "no text": ("", None),
     "NUL": ("out[0]", "out\0[0]"),
 }
 EXP = "static double exp(double z)\n{\n    return z;\n}"
 ZEROS = "    for (long j = 0; j < n*n; ++j) {\n        out[j] = 0.0;\n    }"
 C = {
+    "a margin that is nan outside": ("out[7] = M;", "out[7] = sqrt(M)*sqrt(M);"),
     "a macro": ("#include <math.h>\n", "#include <math.h>\n#define p q\n"),
     "another header": ("#include <math.h>\n", '#include <math.h>\n#include "m.h"\n'),
     "a function of the library": ("static double pick", f"{EXP}\n\nstatic double pick"),

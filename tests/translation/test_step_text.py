@@ -72,6 +72,14 @@ NOT_READ = {
         "m[0] = T_minus_T_0",
         "m[0] = sqrt_of(power_2_of(T_minus_T_0))",
     ),
+    "a margin that no state outside has": (
+        "m[0] = T_minus_T_0",
+        "m[0] = power_2_of(sqrt_of(T_minus_T_0))",
+    ),
+    "a mean that needs the domain": (
+        "out[0] = T_0*expm1_of",
+        "out[0] = power_2_of(sqrt_of(T_0))*expm1_of",
+    ),
     "a choice by the domain of states": (
         RIGHT,
         RIGHT.replace("rho[j]/", "chosen(is_above(x[3 + N], 0.0), rho[j], zero)/"),
