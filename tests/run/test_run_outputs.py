@@ -150,7 +150,7 @@ def test_the_command(tmp_path):
 def test_stores_have_them_too(tmp_path, monkeypatch):
     pytest.importorskip("zarr")
     streaming = sys.modules["piezo_sym.run.streaming"]
-    monkeypatch.setattr(streaming, "WINDOW", 2000)
+    monkeypatch.setattr(streaming, "WINDOW", 40_000)
     given = {"duration": 0.02, "inputs": DRIVE, "outputs": ["damper"], "rtol": 1e-9}
     kept = simulate("piezo_stack", store=tmp_path / "run.zarr", **given)
     whole = simulate("piezo_stack", **given)
