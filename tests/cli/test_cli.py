@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 import piezo_sym
-from piezo_sym.spec.source import shipped
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = ["new", "verify", "generate", "show", "simulate", "reproduce", "schema"]
