@@ -32,7 +32,6 @@ hysteron       | hysteron | E   | between             | - | inductance H phi:Wb;
 transformer    | coupling | EE  | first second        | + | ratio 1                                | |
 lever          | coupling | MM  | first second        | + | ratio 1                                | |
 gear           | coupling | RR  | first second        | + | ratio 1                                | |
-belt           | coupling | RR  | first second        | + | ratio 1                                | |
 transducer     | coupling | EMM | electrical translation? mechanical? | - | ratio 1 T:K            | temperature? |
 motor          | coupling | EMR | electrical translation? rotation?   | + | constant 1             | |
 rack           | coupling | MR  | translation rotation                | + | radius 1               | |

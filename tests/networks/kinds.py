@@ -455,7 +455,6 @@ KINDS = {
     "transformer": Kind(coupled, "e", "coupling", nodes=PAIRS),
     "lever": Kind(coupled, "m", "coupling", nodes=PAIRS, weight=2),
     "gear": Kind(coupled, "r", "coupling", nodes=PAIRS, weight=2),
-    "belt": Kind(coupled, "r", "coupling", nodes=PAIRS, weight=2),
     "transducer": Kind(transducer, "em", "coupling", across=False, nodes=BOTH, weight=2),
     "motor": Kind(
         motor,

@@ -93,7 +93,6 @@ TABLE = (
     ),
     Kind("rotational_damper", "A rotational damper between two nodes, a bearing.", _BEARING),
     Kind("gear", "An ideal gear between two pairs of nodes.", _GEAR),
-    Kind("belt", "A belt drive: two pulleys turn the same way, the ratio is r_2/r_1.", _GEAR),
     Kind("torque_source", "A torque on a node.", _TORQUE),
     Kind("angular_velocity_source", "An angular velocity given to a node.", _ANGULAR_VELOCITY),
     Kind(
