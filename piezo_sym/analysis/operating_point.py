@@ -45,7 +45,7 @@ class OperatingPoint:
     initial : the state by name, a bank's as one value per lane: `simulate(initial=...)` takes it.
     x, u : the same as arrays (n,), banks spread, and (m,).
     parameters : those that were given, as `simulate` takes them.
-    outputs : port -> y.
+    outputs : `y_<port>` -> value.
     temperatures : body -> temperature [K].
     holding : held body -> heat [W] that has to be put in so that its temperature stays.
     eigenvalues : of the Jacobian of all states that are not held [1/s].
@@ -169,13 +169,14 @@ def _described(
         holding[name] = -temperatures[name] * float(rates[entropy_row(module, p, x, body)])
     eigenvalues = np.linalg.eigvals(search.slope(x))
     margin = ROUND_OFF * float(np.max(np.abs(eigenvalues), initial=0.0))
+    outputs = by_name(module.OUTPUTS, p, module.outputs(x, u, p))
     return OperatingPoint(
         inputs=by_name(module.INPUTS, p, u),
         initial=by_name(module.STATES, p, x),
         x=x,
         u=u,
         parameters=parameters,
-        outputs=by_name(module.OUTPUTS, p, module.outputs(x, u, p)),
+        outputs={f"y_{port}": y for port, y in outputs.items()},
         temperatures=temperatures,
         holding=holding,
         eigenvalues=eigenvalues.astype(complex),

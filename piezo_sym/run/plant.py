@@ -54,10 +54,10 @@ def read_quanta(
     given: Mapping[str, float] | None, states: tuple[str, ...], outputs: tuple[str, ...]
 ) -> tuple[FloatArray | None, FloatArray | None]:
     """Return the quanta of x (n,) and y (ports,), 0 where there is none; None without any."""
-    where, ports = "Stepper.quantum", tuple(f"y_{name}" for name in outputs)
-    known = known_keys(given, (*states, *ports), where)
+    where = "Stepper.quantum"
+    known = known_keys(given, (*states, *outputs), where)
     sizes = {name: positive(value, f"{where}.{name}") for name, value in known.items()}
-    x, y = (np.array([sizes.get(name, 0.0) for name in names]) for names in (states, ports))
+    x, y = (np.array([sizes.get(name, 0.0) for name in names]) for names in (states, outputs))
     return x if np.any(x) else None, y if np.any(y) else None
 
 

@@ -71,7 +71,8 @@ class Stepper:
 
     Attributes
     ----------
-    states, inputs, outputs : the names of the entries of x, u and y, in order; lanes `phi_1`, ...
+    states, inputs, outputs : the names of the entries of x, u and y, in order, those of
+        `simulate`'s Dataset: an output is `y_<port>`; lanes are `phi_1`, ...
     x : the state (n,), a copy, banks spread; `measured`: the same by quanta.
     time : the time [s] after the steps taken.
     ledger : what ports and processes did since t = 0, by the names of `simulate`'s Dataset.
@@ -102,7 +103,7 @@ class Stepper:
         values, known = read_plants(module, parameters), read_held(module, inputs, self._h)
         self.states = tuple(row_names(module.STATES, values[0]))
         self.inputs = tuple(record.name for record in module.INPUTS)
-        self.outputs = tuple(record.name for record in module.OUTPUTS)
+        self.outputs = tuple(f"y_{record.name}" for record in module.OUTPUTS)
         self._u = np.tile(known.segments[0].at(0.0), (len(values), 1))
         self._y = np.zeros((len(values), len(self.outputs)))
         stepping = Stepping(stages, 0.0, self._h, self._h, fixed=self._h)

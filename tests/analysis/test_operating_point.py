@@ -21,6 +21,7 @@ def test_the_actuator_rests_where_its_forces_balance() -> None:
     assert found.initial["q"] == pytest.approx(q, rel=1e-13)
     assert found.initial["Q_C"] == pytest.approx(5e-6 * 100.0, rel=1e-13)
     assert found.temperatures == {"body": pytest.approx(T, rel=1e-13)}
+    assert list(found.outputs) == ["y_load", "y_supply", "y_ambient"]
     assert found.stable
     assert found.undetermined == ("phi[1]", "phi[2]")  # they circulate within the dead zones
     assert np.abs(found.initial["phi"]).max() < 1e-15

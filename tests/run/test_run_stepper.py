@@ -148,11 +148,11 @@ def test_names_are_in_the_order_of_the_numbers():
     actuator = Stepper("piezo_stack", step=H, parameters={"hysteron_count": 3})
     assert actuator.states == ("q", "p", "Q_C", "phi_1", "phi_2", "phi_3", "S")
     assert actuator.inputs == ("F_ext", "V_in", "T_e")
-    assert actuator.outputs == ("load", "supply", "ambient")
+    assert actuator.outputs == ("y_load", "y_supply", "y_ambient")
     y = dict(zip(actuator.outputs, actuator.step([0.0, 50.0, 298.15]), strict=True))
     x = dict(zip(actuator.states, actuator.x, strict=True))
-    assert y["load"] == pytest.approx(x["p"] / 3.5e-3)
-    assert y["supply"] == pytest.approx((x["phi_1"] + x["phi_2"] + x["phi_3"]) / 1e-3)
+    assert y["y_load"] == pytest.approx(x["p"] / 3.5e-3)
+    assert y["y_supply"] == pytest.approx((x["phi_1"] + x["phi_2"] + x["phi_3"]) / 1e-3)
 
 
 def walked(actuator):
