@@ -29,6 +29,17 @@ from piezo_sym.spec.source import data
             "initial.s",
             "'s' is no state of this spec; did you mean 'S'?",
         ),
+        *(
+            (
+                'S = "c_0*log(T_e/T_0)"',
+                f"{word} = 320.0",
+                f"initial.{word}",
+                "give its entropy 'S' ('c*log(T_start/T_0)' where the temperature is "
+                "'T_0*exp(S/c)'), or the temperature to a run: --initial T_body=320, "
+                "simulate(initial={'T_body': 320})",
+            )
+            for word in ("T_body", "T")
+        ),
     ],
 )
 def test_unknown_keys_are_answered_with_the_nearest(old, new, place, answer):

@@ -134,7 +134,8 @@ def _check_initial(spec: Tables) -> None:
         where = f"initial.{symbol}"
         if symbol not in known:
             what = f"{quote(symbol)} is no state of this spec"
-            raise SpecError(what, where, remedy=_meant_state(spec, symbol))
+            remedy = _entropy_of(spec, symbol, start) or _meant_state(spec, symbol)
+            raise SpecError(what, where, remedy=remedy)
         count = sizes.get(lanes.get(symbol, ""))
         if isinstance(start, tuple) and len(start) != count:
             expected = (
@@ -199,6 +200,21 @@ def _states_of_letter(spec: Tables, letter: str, words: Collection[str]) -> str:
     found = [s for s, name in states(spec).items() if spec.elements[name].letter == letter]
     meant = [symbol for symbol in found if symbol in words]
     return f"states go by their own symbols: {listing(meant)}" if meant else ""
+
+
+def _entropy_of(spec: Tables, word: str, start: object) -> str:
+    """Return how a body starts at a temperature, if the word is one."""
+    found = [body for body in bodies(spec) if word in (f"T_{body}", "T")]
+    if not found or word in spec.parameters or word in spec.inputs:
+        return ""
+    element = spec.elements[body := found[0]]
+    state = next(s.symbol for s in element.own_states(body) if s.is_entropy)
+    kelvin = start if isinstance(start, float) else 300.0
+    return (
+        f"give its entropy {quote(state)} ('c*log(T_start/T_0)' where the temperature is "
+        f"'T_0*exp(S/c)'), or the temperature to a run: "
+        f"--initial T_{body}={kelvin:g}, simulate(initial={{'T_{body}': {kelvin:g}}})"
+    )
 
 
 def _meant_state(spec: Tables, word: str) -> str:
