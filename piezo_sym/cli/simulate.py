@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
+from piezo_sym.cli.declared import Units
 from piezo_sym.cli.output import about, console, row, table, warnings_as_lines
-from piezo_sym.cli.words import numbers, pairs, signal
+from piezo_sym.cli.words import numbers, pairs
 from piezo_sym.errors import (
     FileError,
     NetworkError,
@@ -38,7 +39,8 @@ T0 = "When the run starts [s]; 0, or where it goes on."
 OUTPUTS = "Quantities of elements: all, or spring,damper.heat,..."
 CONTINUE = "Go on from the end of this run (.nc or .zarr)."
 INITIAL = "STATE=NUMBER or T_<body>=KELVIN at t = 0; SI; repeat."
-SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; SI; repeat."
+SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; repeat. As --set for units."
+SET = "PARAMETER=NUMBER in SI, whatever unit the spec has, or with its unit: L=1.2mH; repeat."
 
 Number: TypeAlias = float | None
 Count: TypeAlias = int | None
@@ -56,7 +58,7 @@ def simulate(
     spec: Annotated[str, typer.Argument(metavar="SPEC", help="Path or shipped name.")],
     duration: Annotated[float, option("Length of the run [s].")],
     inputs: Annotated[Words, option(SIGNALS, "--input", "-i")] = None,
-    parameters: Annotated[Words, option("PARAMETER=NUMBER; SI; repeat.", "--set", "-p")] = None,
+    parameters: Annotated[Words, option(SET, "--set", "-p")] = None,
     initial: Annotated[Words, option(INITIAL, "--initial")] = None,
     continued: Annotated[File, option(CONTINUE, "--continue")] = None,
     t0: Annotated[Number, option(T0, "--t0")] = None,
@@ -84,21 +86,22 @@ def simulate(
     [kV]. Of several columns the one named like the input counts.
     """
     _check_ending(out, events)
-    signals = dict(pairs(inputs or (), "--input", signal))
+    units = Units(spec)
+    signals = dict(pairs(inputs or (), "--input", units.signal))
     when = {"duration": duration, "t0": t0, "times": times, "stop": stop}
     how = {"rtol": rtol, "step": step, "order": order, "method": method, "outputs": outputs}
     result = _run(
         spec,
         out,
         inputs=signals,
-        parameters=dict(pairs(parameters or (), "--set", numbers)),
+        parameters=dict(pairs(parameters or (), "--set", units.numbers)),
         initial=_start(continued, dict(pairs(initial or (), "--initial", numbers))),
         events=dict(pairs(events or (), "--event", lambda text, _: text)),
         dissipative_start=dissipative_start,
         **when,
         **how,
     )
-    _report(result, signals, out)
+    _report(result, [*units.assumed, *_assumed(signals)], out)
 
 
 def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
@@ -118,7 +121,14 @@ def _is_store(out: Path | None) -> bool:
     return out is not None and out.suffix == STORE
 
 
-def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None) -> None:
+def _assumed(signals: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what was taken of files that say no units."""
+    for name, value in signals.items():
+        if assumed := getattr(value, "assumed", ""):
+            yield f"{name}: its file names no units; read {assumed}"
+
+
+def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) -> None:
     """Write a result, and then print it: a closed pipe is no reason to lose it."""
     if out is not None and not _is_store(out):
         _write(result, out)
@@ -129,9 +139,8 @@ def _report(result: xarray.Dataset, inputs: Mapping[str, Any], out: Path | None)
             typer.echo(f"event {name}, {hits.size} in all: t = {found or 'never'}")
     if "stopped" in result.attrs:
         typer.echo(f"stopped: {result.attrs['stopped']}")
-    for name, value in inputs.items():
-        if assumed := getattr(value, "assumed", ""):
-            typer.echo(f"{name}: its file names no units; read {assumed}")
+    for line in assumed:
+        typer.echo(line)
     if out is not None:
         typer.echo(f"{out}")
 

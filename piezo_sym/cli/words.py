@@ -39,15 +39,15 @@ def signal(text: str, where: str) -> Any:
         return from_file(text[1:], where)
     call = CALL.fullmatch(text)
     if call is None:
-        return _number(text, where)
+        return number(text, where)
     from piezo_sym.run.signals import SIGNALS
 
     if call["name"] not in SIGNALS:
         what = f"{quote(call['name'])} is no signal"
         raise UsageError(what, where, remedy=nearest(call["name"], SIGNALS))
     words = [part.rpartition("=") for part in call["numbers"].split(",")]
-    given = [_number(value, where) for _, equals, value in words if not equals]
-    named = {word.strip(): _number(value, where) for word, equals, value in words if equals}
+    given = [number(value, where) for _, equals, value in words if not equals]
+    named = {word.strip(): number(value, where) for word, equals, value in words if equals}
     try:
         return SIGNALS[call["name"]](*given, **named)
     except TypeError as error:
@@ -87,13 +87,15 @@ def from_file(path: str, where: str) -> Any:
 
 def numbers(text: str, where: str) -> float | list[float]:
     """Return a number, or a list of them for the lanes of a bank."""
-    found = [_number(part, where) for part in text.split(",")]
+    found = [number(part, where) for part in text.split(",")]
     return found[0] if len(found) == 1 else found
 
 
-def _number(text: str, where: str) -> float:
+def number(text: str, where: str) -> float:
+    """Return a number."""
     try:
         value = float(text.replace("_", "x"))
     except ValueError:
-        raise UsageError(f"{quote(text)} is no number", where, "such as 0.5 or 1e-3") from None
+        expected = "such as 0.5 or 1e-3, in SI"
+        raise UsageError(f"{quote(text)} is no number", where, expected) from None
     return int(value) if value.is_integer() and text.strip().isdigit() else value

@@ -226,7 +226,13 @@ def _meant(name: str, text: str) -> str:
     two = next((f"{a}*{b}" for a, b in cuts if a in COMMON and b in COMMON), "")
     text = re.sub(rf"/{name}(?![A-Za-z])", f"/({two})", text)
     text = re.sub(rf"(?<![A-Za-z]){name}(?![A-Za-z])", two, text)
-    return f"write {quote(text or two)}" if two else nearest(name, COMMON)
+    if two:
+        return f"write {quote(text or two)}"
+    alike = _registry().parse_unit_name(name, case_sensitive=False)  # mHenry
+    for prefix, root, _ in (found for found in alike if found[1] in UNITS):
+        symbol = str(_registry().get_symbol(prefix + root)).translate(ASCII)
+        return f"did you mean {quote(symbol)}?"
+    return nearest(name, COMMON)
 
 
 def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:

@@ -168,7 +168,29 @@ def test_the_help_spells_every_signal_as_it_is_written():
     assert all(spelled(name) in said for name in SIGNALS)
 
 
+def test_numbers_are_in_si_or_in_a_unit_of_their_own(call, spec_file):
+    """The spec says L = 1 mH and V_in in kV; 1.2 is in H then, and the command says so."""
+    spec = spec_file('L    = { value = 1e-3,   unit = "H"', 'L = { value = 1.0, unit = "mH"')
+    spec.write_text(spec.read_text().replace('V_in  = { unit = "V"', 'V_in = { unit = "kV"'))
+    words = ("simulate", spec, "--duration", "1e-4", "--times", "3")
+    plain = call(*words, "--set", "L=1.2e-3", "--input", "V_in=1e2")
+    *table, one, other = plain.out.splitlines()
+    assert one == "V_in: read in V, though the spec has kV; a number may say its unit: V_in=1.2kV"
+    assert other == "L: read in H, though the spec has mH; a number may say its unit: L=1.2mH"
+    for L, volts in [("1.2mH", "0.1kV"), ("1200 uH", "100V"), ("1.2mH,1.2e3uH", "1e-1kV")]:
+        said = call(*words, "--set", f"L={L}", "--input", f"V_in={volts}")
+        assert (said.code, said.out.splitlines()) == (0, table)
+    assert "though" not in call(*words, "--set", "C=5uF").out
+
+
 REFUSED = [
+    (("-p", "L=1.2mF"), "--set L: 'mF' is no unit of 'L'; expected one such as H"),
+    (("-p", "L=1e-3,2mH"), "--set L: '1e-3' has no unit; expected a unit for each number, or none"),
+    (("-p", "L=1.2mHenry"), "--set L: unknown unit 'mHenry'; did you mean 'mH'?"),
+    (("-p", "T_0=20degC"), "--set T_0: unit 'degC' has an offset"),
+    (("-p", "hysteron_count=2m"), "--set hysteron_count: 'm' is no unit of 'hysteron_count'; exp"),
+    (("-p", "zz=2mH"), "simulate.parameters: unknown name 'zz'; known: M, k"),
+    (("--initial", "q=1mm"), "--initial q: '1mm' is no number; expected such as 0.5 or 1e-3"),
     (("-i", "V_in"), "--input: 'V_in' has no '='; expected NAME=VALUE"),
     (("-i", "V_in=high"), "--input V_in: 'high' is no number; expected such as 0.5 or 1e-3"),
     (("-i", "V_in="), "--input V_in: '' is no number"),

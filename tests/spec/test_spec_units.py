@@ -178,7 +178,11 @@ def test_texts_that_are_no_units(text):
     ("text", "answer"),
     [
         ("Ohm", "did you mean 'ohm'?"),
-        ("Henry", "known: m, kg"),
+        ("Henry", "did you mean 'H'?"),
+        ("mHenry", "did you mean 'mH'?"),
+        ("kOhm", "did you mean 'kohm'?"),
+        ("uFarad", "did you mean 'uF'?"),
+        ("Zoll", "known: m, kg"),
         ("foo", "known: "),
         ("nan", "unknown unit 'nan'"),
         ("inf", "unknown unit 'inf'"),
