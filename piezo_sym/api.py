@@ -17,6 +17,7 @@ from piezo_sym.analysis import operating_point as rest
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
 from piezo_sym.run import simulate as run
+from piezo_sym.run.checks import known_keys
 from piezo_sym.run.simulate import stages_of
 from piezo_sym.run.stepper import Stepper as Steps
 
@@ -38,10 +39,12 @@ def of_spec(
     """
 
     def call(model: Spec, *args: P.args, **given: P.kwargs) -> R:
+        known_keys(given, options, run.__name__)
         return run(module_of(model, stages(given)), *args, **given)
 
     made: Any = update_wrapper(call, run, updated=())
     first, *others = signature(run).parameters.values()
+    options = tuple(other.name for other in others)
     first = first.replace(name="model", annotation=Spec)
     made.__signature__ = signature(run).replace(parameters=[first, *others])
     return call  # type: ignore[return-value]  # the model may be given by name, too

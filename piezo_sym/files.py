@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from piezo_sym.errors import FileError, UsageError, one_line, quote
+from piezo_sym.errors import FileError, UsageError, nearest, one_line, quote
 
 
 def write_text(path: Path, text: str) -> None:
@@ -79,6 +79,15 @@ def read_bytes(path: Path) -> bytes | None:
         return None
     except OSError as error:
         raise _cannot("read", path, error) from error
+
+
+def near_file(path: Path) -> str:
+    """Return the remedy for a file that is not there: one beside it that is called nearly so."""
+    names: list[str] = []
+    with suppress(OSError, ValueError):
+        names = [entry.name for entry in path.parent.iterdir() if entry.suffix == path.suffix]
+    meant = nearest(path.name, names)
+    return meant if meant.startswith("did you mean") else "check the path"
 
 
 def folder_entries(path: Path) -> list[Path]:

@@ -22,7 +22,7 @@ from piezo_sym.errors import (
     UsageError,
     listing,
 )
-from piezo_sym.files import path_text, write_bytes, zarr_library
+from piezo_sym.files import near_file, path_text, write_bytes, zarr_library
 
 if TYPE_CHECKING:
     import xarray
@@ -153,7 +153,8 @@ def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
     if initial:
         raise UsageError("--initial is given too", "--continue", "one of them")
     if not path.exists():
-        raise FileError("there is no such file or store", path_text(path))
+        what = "there is no such file or store"
+        raise FileError(what, path_text(path), remedy=near_file(path))
     try:
         if _is_store(path):
             zarr_library("--continue")

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from piezo_sym.errors import FileError, PiezoError, UsageError, listing, nearest, quote
+from piezo_sym.files import near_file
 from piezo_sym.run.checks import FloatArray, increasing, vector
 from piezo_sym.run.signals import MOST_CORNERS, Signal
 
@@ -172,7 +173,8 @@ def _opened(path: Path) -> Iterator[tuple[list[tuple[str, str]], str, Iterator[l
             rows = csv.reader(file, delimiter=delimiter, skipinitialspace=True)
             yield header, delimiter, rows
     except OSError as cause:
-        raise FileError(f"cannot be read: {cause.strerror}", str(path)) from cause
+        what = f"cannot be read: {cause.strerror}"
+        raise FileError(what, str(path), remedy=near_file(path)) from cause
     except UnicodeDecodeError as cause:
         raise FileError("is not text in UTF-8", str(path), remedy="save it as UTF-8") from cause
 

@@ -30,10 +30,18 @@ def first_problem(error: ValidationError) -> SpecError:
     found = error.errors(include_url=False)
     # a misspelled key explains a missing one, so it comes first
     found.sort(key=lambda detail: detail["type"] != "extra_forbidden")
-    problem = _problem(found[0])
-    if len(found) > 1:
-        problem.remedy = "; ".join(filter(None, (problem.remedy, f"{len(found) - 1} more to mend")))
+    first, *others = found
+    problem = _problem(first)
+    count = sum(not _explained(other, first, problem) for other in others)
+    more = f"{count} more fault{'s' * (count > 1)} in this spec" if count else ""
+    problem.remedy = "; ".join(filter(None, (problem.remedy, more)))
     return problem
+
+
+def _explained(other: ErrorDetails, first: ErrorDetails, problem: SpecError) -> bool:
+    """Return whether a key is missing only because the first fault is its misspelled name."""
+    meant = problem.remedy == f"did you mean '{other['loc'][-1]}'?"
+    return other["type"] == "missing" and meant and other["loc"][:-1] == first["loc"][:-1]
 
 
 def _problem(detail: ErrorDetails) -> SpecError:

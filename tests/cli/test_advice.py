@@ -103,7 +103,9 @@ SHORT = ["simulate", "oscillator", "--duration", "1"]
         (["kinds", "end_stop"], 'write a spring with force = "k_c*max(q - gap, 0)"'),
         (["simulate", "oscillator"], "see `piezo-sym simulate --help`"),
         (["simulate", "mine", "--duration", "1"], "did you mean the file 'mine.toml'?"),
-        ([*SHORT, "--continue", "nofile.nc"], "there is no such file"),
+        ([*SHORT, "--continue", "nofile.nc"], "there is no such file or store; check the path"),
+        ([*SHORT, "-i", "F=@nofile.csv"], "No such file or directory; check the path"),
+        ([*SHORT, "-i", "F=@drve.csv"], "did you mean 'drive.csv'?"),
         ([*SHORT, "--event", "k=q"], "the run has a quantity of that name"),
         ([*SHORT, "--event", "hit=q>0.005"], "write 'q - 0.005'"),
         ([*SHORT, "--step", "1e-12"], "simulate.step: 1e-12 s is too short a step"),
@@ -115,6 +117,7 @@ SHORT = ["simulate", "oscillator", "--duration", "1"]
 )
 def test_a_command_line(refused, spec_file, tmp_path, monkeypatch, words, advice):
     spec_file()
+    (tmp_path / "drive.csv").touch()
     monkeypatch.chdir(tmp_path)
     assert advice in refused(*words)
 
@@ -164,3 +167,18 @@ def test_a_run_of_an_edited_spec(spec_file):
 def test_a_wrong_argument_is_one_of_what_was_called(call, place):
     with pytest.raises(PiezoError, match=f"^{place}: unknown name 'kk'"):
         call()
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: simulate("oscillator", tend=5), "simulate: unknown name 'tend'; known: inputs"),
+        (lambda: simulate("oscillator", input={}), "simulate: unknown name 'input'; did you mean"),
+        (lambda: Stepper("oscillator", setp=1), "Stepper: unknown name 'setp'; did you mean"),
+        (lambda: operating_point("oscillator", T=300), "operating_point: unknown name 'T'"),
+    ],
+)
+def test_an_option_that_is_none(call, message):
+    with pytest.raises(PiezoError) as error:
+        call()
+    assert str(error.value).startswith(message)

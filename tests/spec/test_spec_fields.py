@@ -172,7 +172,14 @@ def test_the_temperature_needs_a_body_in_a_transducer():
 
 def test_several_faults_are_counted():
     message = refused_edit(("value = 3.5e-3", "value = nan"), ("value = 5e5", "value = inf"))
-    assert message.endswith("; 1 more to mend")
+    assert message.endswith("; 1 more fault in this spec")
+    message = refused_edit(('stiffness = "k"', 'stifness = "k"'), ("value = 5e5", "value = inf"))
+    assert message.endswith("did you mean 'stiffness'?; 1 more fault in this spec")
+
+
+def test_a_misspelled_key_is_one_fault():
+    message = refused_edit(('stiffness = "k"', 'stifness = "k"'))
+    assert message.endswith("unknown key 'stifness'; did you mean 'stiffness'?")
 
 
 HINTS = [
