@@ -69,10 +69,14 @@ def said_at_the_end() -> Iterator[list[str]]:
     typer.echo("".join(f"{line}\n" for line in lines), nl=False)
 
 
+#: Columns of a log, which wraps nothing.
+ENDLESS = 1_000_000
+
+
 def console() -> Console:
-    """Return the console for results; wide enough in a log that no row is cut."""
+    """Return the console for results; in a log or a pipe each row is one line."""
     found = Console()
-    return found if found.is_terminal else Console(width=120)
+    return found if found.is_terminal else Console(width=ENDLESS)
 
 
 def row(table: Table, *cells: str | Text) -> None:
@@ -82,7 +86,8 @@ def row(table: Table, *cells: str | Text) -> None:
 
 def table(title: str, *columns: str) -> Table:
     """Return an empty table with a title and named columns."""
-    made = Table(title=Text(title, style="bold"), title_justify="left", box=box.SIMPLE_HEAD)
+    headed = Text(title, style="bold", no_wrap=True, overflow="ignore")
+    made = Table(title=headed, title_justify="left", box=box.SIMPLE_HEAD)
     for column in columns:
         made.add_column(column)
     return made

@@ -104,7 +104,7 @@ SHORT = ["simulate", "oscillator", "--duration", "1"]
         (["simulate", "oscillator"], "see `piezo-sym simulate --help`"),
         (["simulate", "mine", "--duration", "1"], "did you mean the file 'mine.toml'?"),
         ([*SHORT, "--continue", "nofile.nc"], "there is no such file or store; check the path"),
-        ([*SHORT, "-i", "F=@nofile.csv"], "No such file or directory; check the path"),
+        ([*SHORT, "-i", "F=@absent_table.csv"], "No such file or directory; check the path"),
         ([*SHORT, "-i", "F=@drve.csv"], "did you mean 'drive.csv'?"),
         ([*SHORT, "--event", "k=q"], "the run has a quantity of that name"),
         ([*SHORT, "--event", "hit=q>0.005"], "write 'q - 0.005'"),

@@ -46,5 +46,20 @@ def test_the_table_says_why_something_is_not_proved(call, unproved):
     assert "passive of damper: d*v*v = -1" in answer.out
 
 
+def test_no_line_is_wrapped_in_a_pipe(call, spec_file, monkeypatch):
+    """A reason and a row are one line each, whatever the width of the terminal."""
+    monkeypatch.setenv("COLUMNS", "40")
+    longer, name = "conductance_of_the_damper_of_it", "n" * 30
+    path = spec_file('"d >= 0", ', "")
+    text = path.read_text().replace("\nd    =", f"\n{longer} =").replace('"d*v"', f'"{longer}*v"')
+    path.write_text(text.replace('name   = "mine"', f'name = "{name}"'))
+    answer = call("verify", path)
+    lines = answer.out.splitlines()
+    assert lines[0].startswith(f"{name}: ")
+    assert "REFUTED" in lines[0]
+    why = f"{longer}*v*v = -1; the condition '{longer} >= 0' in [domain] mends it"
+    assert f"passive of damper: {why}" in lines
+
+
 def test_one_model_that_is_not_proved_is_enough(call, unproved):
     assert call("verify", unproved, "piezo_stack").code == 1
