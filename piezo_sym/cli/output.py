@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from piezo_sym.errors import PiezoError, one_line
+from piezo_sym.errors import PiezoError, UsageError, one_line
 
 STYLES = {"PROVED": "green", "REFUTED": "bold red", "OPEN": "yellow"}
 
@@ -36,14 +36,19 @@ def about(spec: str, *kinds: type[PiezoError]) -> Iterator[None]:
 
 @contextmanager
 def warnings_as_lines() -> Iterator[None]:
-    """Print what runs from within warn of as one line on stderr."""
+    """Print what runs from within warn of as one line on stderr.
+
+    A call that is refused has one line, its error: of modules it says nothing.
+    """
     from piezo_sym.modules import ModuleWarning
     from piezo_sym.run.engine import EngineWarning
 
-    kinds = EngineWarning, ModuleWarning
+    kinds, of_modules = (EngineWarning, ModuleWarning), list[str]()
 
     def shown(message: Warning | str, *others: Any, **named: Any) -> None:
-        if isinstance(message, kinds):
+        if isinstance(message, ModuleWarning):
+            of_modules.append(f"piezo-sym: {one_line(str(message))}")
+        elif isinstance(message, kinds):
             typer.echo(f"piezo-sym: {one_line(str(message))}", err=True)
         else:
             before(message, *others, **named)
@@ -53,7 +58,14 @@ def warnings_as_lines() -> Iterator[None]:
         warnings.showwarning = shown
         for kind in kinds:
             warnings.simplefilter("always", kind)
-        yield
+        try:
+            yield
+        except UsageError:
+            of_modules.clear()
+            raise
+        finally:
+            for line in of_modules:
+                typer.echo(line, err=True)
 
 
 @contextmanager

@@ -253,13 +253,18 @@ def test_a_fault_of_the_spec_has_its_name_and_one_of_an_option_has_not(refused, 
     assert refused(*SHORT, "--initial", "M=1").startswith("simulate.initial: ")
 
 
-def test_an_edited_spec_runs_and_its_old_module_is_named(spec_file, tmp_path, monkeypatch, call):
+def test_an_edited_spec_runs_and_its_old_module_is_named(
+    spec_file, tmp_path, monkeypatch, call, refused
+):
     monkeypatch.chdir(tmp_path)
     assert call("generate", spec_file()).code == 0
     path = spec_file("3.5e-3", "4e-3")
     answer = call("simulate", path, "--duration", "1e-3")
     assert answer.code == 0
     assert f"is not used; replace it by `piezo-sym generate {path}`" in answer.err
+    assert len(answer.err.splitlines()) == 1
+    wrong = refused("simulate", path, "--duration", "1e-3", "--set", "zz=1")
+    assert wrong.startswith("simulate.parameters: unknown name 'zz'")  # one line, the error
 
 
 def last(path):
