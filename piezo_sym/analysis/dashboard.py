@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
 ACROSS = 3  # panels in a row
 WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
-MOST_NAMES = 8  # in a column of a legend
+ABROAD = 48  # characters of a legend, beside the power of ten of an axis
+HANDLE = 5  # characters that the line beside a name takes
 HATCHES = ("", "///", "...", "xxx")  # of areas whose colours are used up
 MOST_LANES = 8  # drawn one by one; of more, the mean and the range are drawn
 LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
@@ -162,9 +163,13 @@ def _stack(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str) -> No
 
 
 def _small_legend(axes: Axes) -> None:
-    """Add a legend that names every curve, unless there is one and the panel's label names it."""
+    """Name every curve above its panel, unless there is one and the panel's label names it."""
     names = axes.get_legend_handles_labels()[1]
     if len(names) > 1 or names[0] not in axes.get_ylabel():
-        look: dict[str, Any] = {"framealpha": 0.6, "handlelength": 1.5, "columnspacing": 1.0}
-        columns = -(-len(names) // MOST_NAMES)
-        axes.legend(fontsize=SMALL - 1, loc="best", ncols=columns, **look)
+        columns = max(1, ABROAD // (max(map(len, names)) + HANDLE))
+        rows = -(-len(names) // columns)
+        axes.legend(
+            **{"fontsize": SMALL - 1, "loc": "lower right", "bbox_to_anchor": (1.0, 1.0)},
+            **{"ncols": -(-len(names) // rows), "handlelength": 1.2, "columnspacing": 1.0},
+            **{"handletextpad": 0.4, "borderpad": 0.2, "borderaxespad": 0.1, "frameon": False},
+        )

@@ -120,6 +120,21 @@ def test_every_curve_has_a_name_and_a_look_of_its_own():
     assert len(areas) == 22
 
 
+@pytest.mark.parametrize("lanes", [2, 8])
+def test_a_legend_covers_no_curve(lanes):
+    figure = plot(actuator(parameters={"hysteron_count": lanes}, times=11))
+    figure.draw_without_rendering()
+    found = [axes for axes in figure.axes if axes.get_legend()]
+    assert len(found) == 5
+    for axes in found:
+        legend, own = axes.get_legend().get_window_extent(), axes.get_window_extent()
+        assert legend.y0 >= own.y1
+        assert legend.x1 <= own.x1 + 1
+        assert not any(
+            legend.overlaps(other.get_tightbbox()) for other in figure.axes if other is not axes
+        )
+
+
 def test_the_only_curve_of_a_panel_is_named_once():
     figure = plot(actuator(times=11))
     assert panel(figure, "q").get_legend() is None
