@@ -3,13 +3,18 @@
  *
  * Source:  Scire, Teague (1978), Rev. Sci. Instrum. 49 (12), 1735-1740 (levers); Hunt, Crossley (1975), J. Appl. Mech. 42 (2), 440-445 (end stop); PiezoDrive SA050536
  * Model:   amplified_stack, spec sha256 f97db543e4f43ea0e60de47bf6de8bd925540145e93c475ce6262cae7eb13898
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, continuous, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (Q, q, p, x, x_e, S)
  * u = (F, V, T_e)
+ * p_ = pointer to amplified_stack_parameters, with an underscore beside the model's own p
  */
 #include "amplified_stack.h"
 
@@ -37,7 +42,7 @@ long amplified_stack_states(const amplified_stack_parameters *restrict p_)
     return 6;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long amplified_stack_processes(const amplified_stack_parameters *restrict p_)
 {
     (void)p_;
@@ -59,7 +64,7 @@ void amplified_stack_initial_state(const double *restrict u,
     out[5] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void amplified_stack_rhs(const double *restrict x_,
                          const double *restrict u,
                          const amplified_stack_parameters *restrict p_,
@@ -124,7 +129,7 @@ void amplified_stack_rhs(const double *restrict x_,
     out[5] = (heat_leads + heat_losses + heat_bumper)/T + lam*(T_e/T - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void amplified_stack_outputs(const double *restrict x_,
                              const double *restrict u,
                              const amplified_stack_parameters *restrict p_,
@@ -273,7 +278,10 @@ void amplified_stack_heat(const double *restrict x_,
     out[2] = F_bumper*v_load;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void amplified_stack_entropy_production(const double *restrict x_,
                                         const double *restrict u,
                                         const amplified_stack_parameters *restrict p_,
@@ -310,7 +318,7 @@ void amplified_stack_entropy_production(const double *restrict x_,
     out[2] = F_bumper*v_load/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void amplified_stack_elements(const double *restrict x_,
                               const double *restrict u,
                               const amplified_stack_parameters *restrict p_,
@@ -435,7 +443,7 @@ void amplified_stack_elements(const double *restrict x_,
     out[58] = -lam*(T_e - T);
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void amplified_stack_jacobian(const double *restrict x_,
                               const double *restrict u,
                               const amplified_stack_parameters *restrict p_,
@@ -512,7 +520,7 @@ void amplified_stack_jacobian(const double *restrict x_,
     out[5*n_ + 5] = (-(heat_leads + heat_losses + heat_bumper)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void amplified_stack_margins(const double *restrict x_,
                              const double *restrict u,
                              const amplified_stack_parameters *restrict p_,

@@ -3,13 +3,18 @@
  *
  * Source:  Scire, Teague (1978), Rev. Sci. Instrum. 49 (12), 1735-1740 (levers); Hunt, Crossley (1975), J. Appl. Mech. 42 (2), 440-445 (end stop); PiezoDrive SA050536
  * Model:   amplified_stack, spec sha256 f97db543e4f43ea0e60de47bf6de8bd925540145e93c475ce6262cae7eb13898
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, continuous, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (Q, q, p, x, x_e, S)
  * u = (F, V, T_e)
+ * p_ = pointer to amplified_stack_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_amplified_stack_H
 #define PIEZO_SYM_amplified_stack_H
@@ -56,12 +61,12 @@ typedef struct {
     .lam = 0.02, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     amplified_stack_input_count = 3,
     amplified_stack_output_count = 3,
     amplified_stack_body_count = 1,
-    amplified_stack_limit_count = 14,
+    amplified_stack_condition_count = 14,
 };
 
 /*
@@ -70,7 +75,7 @@ enum {
 long amplified_stack_states(const amplified_stack_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long amplified_stack_processes(const amplified_stack_parameters *p_);
 
@@ -85,7 +90,7 @@ void amplified_stack_initial_state(const double *u,
                                    double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x_[n], read: Q [C], q [m], p [kg*m/s], x [m], x_e [m], S [J/K]
  * u[amplified_stack_input_count], read: F [N], V [V], T_e [K]
  * out[n], written; must not overlap another argument
@@ -96,7 +101,7 @@ void amplified_stack_rhs(const double *x_,
                          double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x_[n], read: Q [C], q [m], p [kg*m/s], x [m], x_e [m], S [J/K]
  * u[amplified_stack_input_count], read: F [N], V [V], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -107,7 +112,7 @@ void amplified_stack_jacobian(const double *x_,
                               double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x_[n], read: Q [C], q [m], p [kg*m/s], x [m], x_e [m], S [J/K]
  * u[amplified_stack_input_count], read: F [N], V [V], T_e [K]
  * out[amplified_stack_output_count], written; must not overlap another argument: push [m/s],
@@ -162,7 +167,8 @@ void amplified_stack_heat(const double *x_,
                           double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x_[n], read: Q [C], q [m], p [kg*m/s], x [m], x_e [m], S [J/K]
  * u[amplified_stack_input_count], read: F [N], V [V], T_e [K]
  * out[amplified_stack_processes(p_)], written; must not overlap another argument
@@ -173,7 +179,7 @@ void amplified_stack_entropy_production(const double *x_,
                                         double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x_[n], read: Q [C], q [m], p [kg*m/s], x [m], x_e [m], S [J/K]
  * u[amplified_stack_input_count], read: F [N], V [V], T_e [K]
  * out[59], written; must not overlap another argument: amplifier.effort [V], amplifier.flow
@@ -197,24 +203,24 @@ void amplified_stack_elements(const double *x_,
                               double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x_[n], read: Q [C], q [m], p [kg*m/s], x [m], x_e [m], S [J/K]
  * u[amplified_stack_input_count], read: F [N], V [V], T_e [K]
- * out[amplified_stack_limit_count], written; must not overlap another argument
- * out[0]: n > 0; inside, > 0
- * out[1]: R > 0; inside, > 0
- * out[2]: d >= 0; inside, >= 0
- * out[3]: k_e >= 0; inside, >= 0
- * out[4]: d_e >= 0; inside, >= 0
- * out[5]: lam >= 0; inside, >= 0
- * out[6]: T_e > 0; inside, > 0
- * out[7]: C > 0; inside, > 0
- * out[8]: k > 0; inside, > 0
- * out[9]: m > 0; inside, > 0
- * out[10]: m_s > 0; inside, > 0
- * out[11]: k_l > 0; inside, > 0
- * out[12]: T_0 > 0; inside, > 0
- * out[13]: c_0 > 0; inside, > 0
+ * out[amplified_stack_condition_count], written; must not overlap another argument
+ * out[0] > 0 where n > 0
+ * out[1] > 0 where R > 0
+ * out[2] >= 0 where d >= 0
+ * out[3] >= 0 where k_e >= 0
+ * out[4] >= 0 where d_e >= 0
+ * out[5] >= 0 where lam >= 0
+ * out[6] > 0 where T_e > 0
+ * out[7] > 0 where C > 0
+ * out[8] > 0 where k > 0
+ * out[9] > 0 where m > 0
+ * out[10] > 0 where m_s > 0
+ * out[11] > 0 where k_l > 0
+ * out[12] > 0 where T_0 > 0
+ * out[13] > 0 where c_0 > 0
  */
 void amplified_stack_margins(const double *x_,
                              const double *u,

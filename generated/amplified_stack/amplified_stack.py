@@ -2,13 +2,18 @@
 
 Source:  Scire, Teague (1978), Rev. Sci. Instrum. 49 (12), 1735-1740 (levers); Hunt, Crossley (1975), J. Appl. Mech. 42 (2), 440-445 (end stop); PiezoDrive SA050536
 Model:   amplified_stack, spec sha256 f97db543e4f43ea0e60de47bf6de8bd925540145e93c475ce6262cae7eb13898
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, continuous, sigma, exergy, environment, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (Q, q, p, x, x_e, S)
 u = (F, V, T_e)
+p_ = Parameters(), with an underscore beside the model's own p
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("Q", "C", "charge of capacitor 'clamped'"),
     Record("q", "m", "extension of spring 'stack'"),
@@ -50,16 +56,19 @@ INPUTS = (
     Record("T_e", "K", "temperature of the air"),
 )
 INPUT_DEFAULTS = (0.0, 0.0, 293.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("push", "m/s", "velocity at force_source 'push'"),
     Record("amplifier", "A", "current given by voltage_source 'amplifier'"),
     Record("air", "K", "temperature of thermal_mass 'body'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("leads", "W/K", "resistor 'leads'"),
     Record("losses", "W/K", "damper 'losses'"),
     Record("bumper", "W/K", "damper 'bumper'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
@@ -124,6 +133,7 @@ ELEMENTS = (
     Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
     Record("air.power", "W", "power into ambient 'air'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("k", "N/m", "stiffness of the stack"),
     Record("m_s", "kg", "moving mass of the stack, 4/pi^2 of it"),
@@ -208,7 +218,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -285,7 +295,7 @@ def _rates(x_, u, p_, out, /):
 
 
 def outputs(x_, u, p_, /):
-    """Outputs y, one per port, conjugate to its input; shape (3, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (3, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     m_s = p_.m_s
@@ -426,7 +436,7 @@ def heat(x_, u, p_, /):
 
 
 def entropy_production(x_, u, p_, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (3, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (3, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     m_s = p_.m_s
@@ -463,7 +473,7 @@ def entropy_production(x_, u, p_, /):
 
 
 def elements(x_, u, p_, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (59, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (59, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     k = p_.k
@@ -592,7 +602,7 @@ def elements(x_, u, p_, /):
 
 
 def jacobian(x_, u, p_, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     k = p_.k
@@ -665,7 +675,7 @@ def jacobian(x_, u, p_, /):
 
 
 def margins(x_, u, p_, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     k = p_.k

@@ -3,13 +3,18 @@
  *
  * Source:  Scire, Teague (1978), Rev. Sci. Instrum. 49 (12), 1735-1740 (levers); Hunt, Crossley (1975), J. Appl. Mech. 42 (2), 440-445 (end stop); PiezoDrive SA050536
  * Model:   amplified_stack, spec sha256 f97db543e4f43ea0e60de47bf6de8bd925540145e93c475ce6262cae7eb13898
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, continuous, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (Q, q, p, x, x_e, S)
  * u = (F, V, T_e)
+ * p_ = pointer to amplified_stack_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_amplified_stack_STEP_H
 #define PIEZO_SYM_amplified_stack_STEP_H
@@ -35,8 +40,8 @@ long amplified_stack_step_size(const amplified_stack_parameters *p_);
  * u[amplified_stack_input_count], read: F [N], V [V], T_e [K]; constant during the step
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by push, amplifier, air; then heat [J], and then
- *     entropy produced [J/K], by leads, losses, bumper; then the entropy [J/K] that each heat
- *     exchange brings
+ *     entropy produced [J/K], by leads, losses, bumper; then entropy [J/K] that heat exchange
+ *     brings to body
  * space[amplified_stack_step_size(p_)], read and written: set it to zero before the first
  *     step, then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared

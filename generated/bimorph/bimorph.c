@@ -3,13 +3,18 @@
  *
  * Source:  Smits, Dalke, Cooney (1991), Sensors and Actuators A 28, 41-61; PiezoDrive BA6020
  * Model:   bimorph, spec sha256 e1bdc157e28404f3e3f2a5e6ecbc555574e7dfbd87761b8afc1f5ffdda416572
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, welldef, temperature, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (x, p, S, Q_u, Q_l)
  * u = (F, V_b, V, T_e)
+ * p_ = pointer to bimorph_parameters, with an underscore beside the model's own p
  */
 #include "bimorph.h"
 
@@ -32,7 +37,7 @@ long bimorph_states(const bimorph_parameters *restrict p_)
     return 5;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long bimorph_processes(const bimorph_parameters *restrict p_)
 {
     (void)p_;
@@ -61,7 +66,7 @@ void bimorph_initial_state(const double *restrict u,
     out[4] = w*l/h*(eps*V + 13.0*power_2(d)/(32.0*s)*(V_b - 2.0*V));
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void bimorph_rhs(const double *restrict x_,
                  const double *restrict u,
                  const bimorph_parameters *restrict p_,
@@ -118,7 +123,7 @@ void bimorph_rhs(const double *restrict x_,
     out[4] = alpha_lower*v_tip + i_output + i_input;
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void bimorph_outputs(const double *restrict x_,
                      const double *restrict u,
                      const bimorph_parameters *restrict p_,
@@ -289,7 +294,10 @@ void bimorph_heat(const double *restrict x_,
     out[2] = F_losses*v_tip;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void bimorph_entropy_production(const double *restrict x_,
                                 const double *restrict u,
                                 const bimorph_parameters *restrict p_,
@@ -332,7 +340,7 @@ void bimorph_entropy_production(const double *restrict x_,
     out[2] = F_losses*v_tip/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void bimorph_elements(const double *restrict x_,
                       const double *restrict u,
                       const bimorph_parameters *restrict p_,
@@ -441,7 +449,7 @@ void bimorph_elements(const double *restrict x_,
     out[51] = h/(4.0*w*l)*(power_2(Q_u + Q_l)/eps + power_2(Q_u - Q_l)/(eps - 13.0*power_2(d)/(16.0*s)));
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void bimorph_jacobian(const double *restrict x_,
                       const double *restrict u,
                       const bimorph_parameters *restrict p_,
@@ -528,7 +536,7 @@ void bimorph_jacobian(const double *restrict x_,
     out[4*n + 4] = di_output_dQ_l + di_input_dQ_l;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void bimorph_margins(const double *restrict x_,
                      const double *restrict u,
                      const bimorph_parameters *restrict p_,

@@ -3,13 +3,18 @@
  *
  * Source:  Smits, Dalke, Cooney (1991), Sensors and Actuators A 28, 41-61; PiezoDrive BA6020
  * Model:   bimorph, spec sha256 e1bdc157e28404f3e3f2a5e6ecbc555574e7dfbd87761b8afc1f5ffdda416572
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, welldef, temperature, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (x, p, S, Q_u, Q_l)
  * u = (F, V_b, V, T_e)
+ * p_ = pointer to bimorph_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_bimorph_H
 #define PIEZO_SYM_bimorph_H
@@ -50,12 +55,12 @@ typedef struct {
     .lam = 0.02, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     bimorph_input_count = 4,
     bimorph_output_count = 4,
     bimorph_body_count = 1,
-    bimorph_limit_count = 13,
+    bimorph_condition_count = 13,
 };
 
 /*
@@ -64,7 +69,7 @@ enum {
 long bimorph_states(const bimorph_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long bimorph_processes(const bimorph_parameters *p_);
 
@@ -77,7 +82,7 @@ long bimorph_processes(const bimorph_parameters *p_);
 void bimorph_initial_state(const double *u, const bimorph_parameters *p_, double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x_[n], read: x [m], p [kg*m/s], S [J/K], Q_u [C], Q_l [C]
  * u[bimorph_input_count], read: F [N], V_b [V], V [V], T_e [K]
  * out[n], written; must not overlap another argument
@@ -85,7 +90,7 @@ void bimorph_initial_state(const double *u, const bimorph_parameters *p_, double
 void bimorph_rhs(const double *x_, const double *u, const bimorph_parameters *p_, double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x_[n], read: x [m], p [kg*m/s], S [J/K], Q_u [C], Q_l [C]
  * u[bimorph_input_count], read: F [N], V_b [V], V [V], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -96,7 +101,7 @@ void bimorph_jacobian(const double *x_,
                       double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x_[n], read: x [m], p [kg*m/s], S [J/K], Q_u [C], Q_l [C]
  * u[bimorph_input_count], read: F [N], V_b [V], V [V], T_e [K]
  * out[bimorph_output_count], written; must not overlap another argument: load [m/s], bias [A],
@@ -146,7 +151,8 @@ void bimorph_temperatures(const double *x_, const bimorph_parameters *p_, double
 void bimorph_heat(const double *x_, const double *u, const bimorph_parameters *p_, double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x_[n], read: x [m], p [kg*m/s], S [J/K], Q_u [C], Q_l [C]
  * u[bimorph_input_count], read: F [N], V_b [V], V [V], T_e [K]
  * out[bimorph_processes(p_)], written; must not overlap another argument
@@ -157,7 +163,7 @@ void bimorph_entropy_production(const double *x_,
                                 double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x_[n], read: x [m], p [kg*m/s], S [J/K], Q_u [C], Q_l [C]
  * u[bimorph_input_count], read: F [N], V_b [V], V [V], T_e [K]
  * out[52], written; must not overlap another argument: bias.effort [V], bias.flow [A],
@@ -179,23 +185,23 @@ void bimorph_elements(const double *x_,
                       double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x_[n], read: x [m], p [kg*m/s], S [J/K], Q_u [C], Q_l [C]
  * u[bimorph_input_count], read: F [N], V_b [V], V [V], T_e [K]
- * out[bimorph_limit_count], written; must not overlap another argument
- * out[0]: l > 0; inside, > 0
- * out[1]: w > 0; inside, > 0
- * out[2]: h > 0; inside, > 0
- * out[3]: s > 0; inside, > 0
- * out[4]: 13*d**2 < 16*s*eps; inside, > 0
- * out[5]: b >= 0; inside, >= 0
- * out[6]: R > 0; inside, > 0
- * out[7]: lam >= 0; inside, >= 0
- * out[8]: T_e > 0; inside, > 0
- * out[9]: 2*w*h**3/(s*l**3) > 0; inside, > 0
- * out[10]: m > 0; inside, > 0
- * out[11]: T_0 > 0; inside, > 0
- * out[12]: c_0 > 0; inside, > 0
+ * out[bimorph_condition_count], written; must not overlap another argument
+ * out[0] > 0 where l > 0
+ * out[1] > 0 where w > 0
+ * out[2] > 0 where h > 0
+ * out[3] > 0 where s > 0
+ * out[4] > 0 where 13*d**2 < 16*s*eps
+ * out[5] >= 0 where b >= 0
+ * out[6] > 0 where R > 0
+ * out[7] >= 0 where lam >= 0
+ * out[8] > 0 where T_e > 0
+ * out[9] > 0 where 2*w*h**3/(s*l**3) > 0
+ * out[10] > 0 where m > 0
+ * out[11] > 0 where T_0 > 0
+ * out[12] > 0 where c_0 > 0
  */
 void bimorph_margins(const double *x_,
                      const double *u,

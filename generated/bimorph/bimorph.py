@@ -2,13 +2,18 @@
 
 Source:  Smits, Dalke, Cooney (1991), Sensors and Actuators A 28, 41-61; PiezoDrive BA6020
 Model:   bimorph, spec sha256 e1bdc157e28404f3e3f2a5e6ecbc555574e7dfbd87761b8afc1f5ffdda416572
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, welldef, temperature, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (x, p, S, Q_u, Q_l)
 u = (F, V_b, V, T_e)
+p_ = Parameters(), with an underscore beside the model's own p
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("x", "m", "extension of spring 'bending'"),
     Record("p", "kg*m/s", "momentum of mass 'tip'"),
@@ -50,17 +56,20 @@ INPUTS = (
     Record("T_e", "K", "temperature of the air"),
 )
 INPUT_DEFAULTS = (0.0, 150.0, 75.0, 293.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("load", "m/s", "velocity at force_source 'load'"),
     Record("bias", "A", "current given by voltage_source 'bias'"),
     Record("supply", "A", "current given by voltage_source 'supply'"),
     Record("air", "K", "temperature of thermal_mass 'beam'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("output", "W/K", "resistor 'output'"),
     Record("input", "W/K", "resistor 'input'"),
     Record("losses", "W/K", "damper 'losses'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("beam", "K", "temperature of thermal_mass 'beam'"),
 )
@@ -118,6 +127,7 @@ ELEMENTS = (
     Record("layers.power", "W", "power into storage 'layers'"),
     Record("layers.energy", "J", "energy of storage 'layers'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("l", "m", "free length"),
     Record("w", "m", "width"),
@@ -208,7 +218,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -275,7 +285,7 @@ def _rates(x_, u, p_, out, /):
 
 
 def outputs(x_, u, p_, /):
-    """Outputs y, one per port, conjugate to its input; shape (4, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (4, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     l = p_.l
@@ -442,7 +452,7 @@ def heat(x_, u, p_, /):
 
 
 def entropy_production(x_, u, p_, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (3, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (3, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     l = p_.l
@@ -485,7 +495,7 @@ def entropy_production(x_, u, p_, /):
 
 
 def elements(x_, u, p_, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (52, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (52, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     l = p_.l
@@ -594,7 +604,7 @@ def elements(x_, u, p_, /):
 
 
 def jacobian(x_, u, p_, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     l = p_.l
@@ -677,7 +687,7 @@ def jacobian(x_, u, p_, /):
 
 
 def margins(x_, u, p_, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     l = p_.l

@@ -3,13 +3,18 @@
  *
  * Source:  Smits, Dalke, Cooney (1991), Sensors and Actuators A 28, 41-61; PiezoDrive BA6020
  * Model:   bimorph, spec sha256 e1bdc157e28404f3e3f2a5e6ecbc555574e7dfbd87761b8afc1f5ffdda416572
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, welldef, temperature, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (x, p, S, Q_u, Q_l)
  * u = (F, V_b, V, T_e)
+ * p_ = pointer to bimorph_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_bimorph_STEP_H
 #define PIEZO_SYM_bimorph_STEP_H
@@ -35,8 +40,8 @@ long bimorph_step_size(const bimorph_parameters *p_);
  * u[bimorph_input_count], read: F [N], V_b [V], V [V], T_e [K]; constant during the step
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by load, bias, supply, air; then heat [J], and then
- *     entropy produced [J/K], by output, input, losses; then the entropy [J/K] that each heat
- *     exchange brings
+ *     entropy produced [J/K], by output, input, losses; then entropy [J/K] that heat exchange
+ *     brings to beam
  * space[bimorph_step_size(p_)], read and written: set it to zero before the first step, then
  *     leave it as it is; it keeps the largest magnitude of each state, with which rounding
  *     errors are compared

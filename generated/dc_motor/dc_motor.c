@@ -3,13 +3,18 @@
  *
  * Source:  Messner, Tilbury, Control Tutorials for MATLAB and Simulink: DC motor speed, with gear and heat
  * Model:   dc_motor, spec sha256 96a82a6d03ed86fc2c97e6ac88a26dd86ab244ed2d6fd71b14db35164a855b91
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (phi, H, S)
  * u = (V_in, tau, T_e)
+ * p = pointer to dc_motor_parameters
  */
 #include "dc_motor.h"
 
@@ -27,7 +32,7 @@ long dc_motor_states(const dc_motor_parameters *restrict p)
     return 3;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long dc_motor_processes(const dc_motor_parameters *restrict p)
 {
     (void)p;
@@ -46,7 +51,7 @@ void dc_motor_initial_state(const double *restrict u,
     out[2] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void dc_motor_rhs(const double *restrict x,
                   const double *restrict u,
                   const dc_motor_parameters *restrict p,
@@ -89,7 +94,7 @@ void dc_motor_rhs(const double *restrict x,
     out[2] = (heat_winding + heat_bearing)/T + lam*(T_e/T - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void dc_motor_outputs(const double *restrict x,
                       const double *restrict u,
                       const dc_motor_parameters *restrict p,
@@ -219,7 +224,10 @@ void dc_motor_heat(const double *restrict x,
     out[1] = tau_bearing*omega_rotor;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void dc_motor_entropy_production(const double *restrict x,
                                  const double *restrict u,
                                  const dc_motor_parameters *restrict p,
@@ -251,7 +259,7 @@ void dc_motor_entropy_production(const double *restrict x,
     out[1] = tau_bearing*omega_rotor/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void dc_motor_elements(const double *restrict x,
                        const double *restrict u,
                        const dc_motor_parameters *restrict p,
@@ -338,7 +346,7 @@ void dc_motor_elements(const double *restrict x,
     out[42] = -lam*(T_e - T);
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void dc_motor_jacobian(const double *restrict x,
                        const double *restrict u,
                        const dc_motor_parameters *restrict p,
@@ -398,7 +406,7 @@ void dc_motor_jacobian(const double *restrict x,
         + (-(heat_winding + heat_bearing)/power_2(T) - lam*T_e/power_2(T))*dT_minus_T_0_dS;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void dc_motor_margins(const double *restrict x,
                       const double *restrict u,
                       const dc_motor_parameters *restrict p,

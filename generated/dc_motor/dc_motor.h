@@ -3,13 +3,18 @@
  *
  * Source:  Messner, Tilbury, Control Tutorials for MATLAB and Simulink: DC motor speed, with gear and heat
  * Model:   dc_motor, spec sha256 96a82a6d03ed86fc2c97e6ac88a26dd86ab244ed2d6fd71b14db35164a855b91
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (phi, H, S)
  * u = (V_in, tau, T_e)
+ * p = pointer to dc_motor_parameters
  */
 #ifndef PIEZO_SYM_dc_motor_H
 #define PIEZO_SYM_dc_motor_H
@@ -48,12 +53,12 @@ typedef struct {
     .T_0 = 293.15, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     dc_motor_input_count = 3,
     dc_motor_output_count = 3,
     dc_motor_body_count = 1,
-    dc_motor_limit_count = 12,
+    dc_motor_condition_count = 12,
 };
 
 /*
@@ -62,7 +67,7 @@ enum {
 long dc_motor_states(const dc_motor_parameters *p);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long dc_motor_processes(const dc_motor_parameters *p);
 
@@ -74,7 +79,7 @@ long dc_motor_processes(const dc_motor_parameters *p);
 void dc_motor_initial_state(const double *u, const dc_motor_parameters *p, double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: phi [Wb], H [N*m*s], S [J/K]
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
  * out[n], written; must not overlap another argument
@@ -82,7 +87,7 @@ void dc_motor_initial_state(const double *u, const dc_motor_parameters *p, doubl
 void dc_motor_rhs(const double *x, const double *u, const dc_motor_parameters *p, double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: phi [Wb], H [N*m*s], S [J/K]
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -93,7 +98,7 @@ void dc_motor_jacobian(const double *x,
                        double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: phi [Wb], H [N*m*s], S [J/K]
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
  * out[dc_motor_output_count], written; must not overlap another argument: supply [A], torque
@@ -143,7 +148,8 @@ void dc_motor_temperatures(const double *x, const dc_motor_parameters *p, double
 void dc_motor_heat(const double *x, const double *u, const dc_motor_parameters *p, double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: phi [Wb], H [N*m*s], S [J/K]
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
  * out[dc_motor_processes(p)], written; must not overlap another argument
@@ -154,7 +160,7 @@ void dc_motor_entropy_production(const double *x,
                                  double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: phi [Wb], H [N*m*s], S [J/K]
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
  * out[43], written; must not overlap another argument: supply.effort [V], supply.flow [A],
@@ -175,22 +181,22 @@ void dc_motor_elements(const double *x,
                        double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: phi [Wb], H [N*m*s], S [J/K]
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
- * out[dc_motor_limit_count], written; must not overlap another argument
- * out[0]: R_0 >= 0; inside, >= 0
- * out[1]: al >= 0; inside, >= 0
- * out[2]: b >= 0; inside, >= 0
- * out[3]: lam >= 0; inside, >= 0
- * out[4]: n > 0; inside, > 0
- * out[5]: 1 + al*(T - T_0) > 0; inside, > 0
- * out[6]: T_e > 0; inside, > 0
- * out[7]: L > 0; inside, > 0
- * out[8]: J_m > 0; inside, > 0
- * out[9]: J_l > 0; inside, > 0
- * out[10]: T_0 > 0; inside, > 0
- * out[11]: c > 0; inside, > 0
+ * out[dc_motor_condition_count], written; must not overlap another argument
+ * out[0] >= 0 where R_0 >= 0
+ * out[1] >= 0 where al >= 0
+ * out[2] >= 0 where b >= 0
+ * out[3] >= 0 where lam >= 0
+ * out[4] > 0 where n > 0
+ * out[5] > 0 where 1 + al*(T - T_0) > 0
+ * out[6] > 0 where T_e > 0
+ * out[7] > 0 where L > 0
+ * out[8] > 0 where J_m > 0
+ * out[9] > 0 where J_l > 0
+ * out[10] > 0 where T_0 > 0
+ * out[11] > 0 where c > 0
  */
 void dc_motor_margins(const double *x,
                       const double *u,

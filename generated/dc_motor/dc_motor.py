@@ -2,13 +2,18 @@
 
 Source:  Messner, Tilbury, Control Tutorials for MATLAB and Simulink: DC motor speed, with gear and heat
 Model:   dc_motor, spec sha256 96a82a6d03ed86fc2c97e6ac88a26dd86ab244ed2d6fd71b14db35164a855b91
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (phi, H, S)
 u = (V_in, tau, T_e)
+p = Parameters()
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("phi", "Wb", "flux linkage of inductor 'armature'"),
     Record("H", "N*m*s", "angular momentum of inertia 'rotor', joined with 'load'"),
@@ -47,15 +53,18 @@ INPUTS = (
     Record("T_e", "K", "temperature of the environment"),
 )
 INPUT_DEFAULTS = (0.0, 0.0, 293.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("supply", "A", "current given by voltage_source 'supply'"),
     Record("torque", "rad/s", "angular velocity at torque_source 'torque'"),
     Record("air", "K", "temperature of thermal_mass 'body'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("winding", "W/K", "resistor 'winding'"),
     Record("bearing", "W/K", "rotational_damper 'bearing'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
@@ -104,6 +113,7 @@ ELEMENTS = (
     Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
     Record("air.power", "W", "power into ambient 'air'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("R_0", "ohm", "resistance of the armature at T_0"),
     Record("al", "1/K", "temperature coefficient of copper"),
@@ -178,7 +188,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -231,7 +241,7 @@ def _rates(x, u, p, out, /):
 
 
 def outputs(x, u, p, /):
-    """Outputs y, one per port, conjugate to its input; shape (3, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (3, *batch)."""
     x = _states(x, p)
     L = p.L
     J_m = p.J_m
@@ -356,7 +366,7 @@ def heat(x, u, p, /):
 
 
 def entropy_production(x, u, p, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (2, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (2, *batch)."""
     x = _states(x, p)
     R_0 = p.R_0
     al = p.al
@@ -386,7 +396,7 @@ def entropy_production(x, u, p, /):
 
 
 def elements(x, u, p, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (43, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (43, *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     R_0 = p.R_0
@@ -473,7 +483,7 @@ def elements(x, u, p, /):
 
 
 def jacobian(x, u, p, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     R_0 = p.R_0
@@ -530,7 +540,7 @@ def jacobian(x, u, p, /):
 
 
 def margins(x, u, p, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     R_0 = p.R_0

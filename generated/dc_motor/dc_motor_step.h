@@ -3,13 +3,18 @@
  *
  * Source:  Messner, Tilbury, Control Tutorials for MATLAB and Simulink: DC motor speed, with gear and heat
  * Model:   dc_motor, spec sha256 96a82a6d03ed86fc2c97e6ac88a26dd86ab244ed2d6fd71b14db35164a855b91
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (phi, H, S)
  * u = (V_in, tau, T_e)
+ * p = pointer to dc_motor_parameters
  */
 #ifndef PIEZO_SYM_dc_motor_STEP_H
 #define PIEZO_SYM_dc_motor_STEP_H
@@ -23,7 +28,7 @@ extern "C" {
 /*
  * Size of `space`, the working memory of a step, in numbers.
  */
-long dc_motor_step_size(const dc_motor_parameters *p_);
+long dc_motor_step_size(const dc_motor_parameters *p);
 
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
@@ -35,9 +40,9 @@ long dc_motor_step_size(const dc_motor_parameters *p_);
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]; constant during the step
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by supply, torque, air; then heat [J], and then entropy
- *     produced [J/K], by winding, bearing; then the entropy [J/K] that each heat exchange
- *     brings
- * space[dc_motor_step_size(p_)], read and written: set it to zero before the first step, then
+ *     produced [J/K], by winding, bearing; then entropy [J/K] that heat exchange brings to
+ *     body
+ * space[dc_motor_step_size(p)], read and written: set it to zero before the first step, then
  *     leave it as it is; it keeps the largest magnitude of each state, with which rounding
  *     errors are compared
  *
@@ -69,7 +74,7 @@ long dc_motor_step_size(const dc_motor_parameters *p_);
 int dc_motor_step(double *x,
                   const double *u,
                   double h,
-                  const dc_motor_parameters *p_,
+                  const dc_motor_parameters *p,
                   double *booked,
                   double *space);
 

@@ -3,13 +3,18 @@
  *
  * Source:  Woodson, Melcher (1968), Electromechanical Dynamics I, ch. 3
  * Model:   electromagnet, spec sha256 9b4244be212754305b836d305b67a8844d9eaeab14c345563f9a22957982c0af
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, S, phi, x)
  * u = (V_in, T_e)
+ * p_ = pointer to electromagnet_parameters, with an underscore beside the model's own p
  */
 #include "electromagnet.h"
 
@@ -27,7 +32,7 @@ long electromagnet_states(const electromagnet_parameters *restrict p_)
     return 5;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long electromagnet_processes(const electromagnet_parameters *restrict p_)
 {
     (void)p_;
@@ -48,7 +53,7 @@ void electromagnet_initial_state(const double *restrict u,
     out[4] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void electromagnet_rhs(const double *restrict x_,
                        const double *restrict u,
                        const electromagnet_parameters *restrict p_,
@@ -92,7 +97,7 @@ void electromagnet_rhs(const double *restrict x_,
     out[4] = v_armature;
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void electromagnet_outputs(const double *restrict x_,
                            const double *restrict u,
                            const electromagnet_parameters *restrict p_,
@@ -216,7 +221,10 @@ void electromagnet_heat(const double *restrict x_,
     out[1] = F_friction*v_armature;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void electromagnet_entropy_production(const double *restrict x_,
                                       const double *restrict u,
                                       const electromagnet_parameters *restrict p_,
@@ -248,7 +256,7 @@ void electromagnet_entropy_production(const double *restrict x_,
     out[1] = F_friction*v_armature/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void electromagnet_elements(const double *restrict x_,
                             const double *restrict u,
                             const electromagnet_parameters *restrict p_,
@@ -323,7 +331,7 @@ void electromagnet_elements(const double *restrict x_,
     out[31] = power_2(phi)*(g + x)/(2.0*mu*A*power_2(N));
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void electromagnet_jacobian(const double *restrict x_,
                             const double *restrict u,
                             const electromagnet_parameters *restrict p_,
@@ -384,7 +392,7 @@ void electromagnet_jacobian(const double *restrict x_,
     out[4*n + 1] = 1.0/m;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void electromagnet_margins(const double *restrict x_,
                            const double *restrict u,
                            const electromagnet_parameters *restrict p_,

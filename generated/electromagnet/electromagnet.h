@@ -3,13 +3,18 @@
  *
  * Source:  Woodson, Melcher (1968), Electromechanical Dynamics I, ch. 3
  * Model:   electromagnet, spec sha256 9b4244be212754305b836d305b67a8844d9eaeab14c345563f9a22957982c0af
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, S, phi, x)
  * u = (V_in, T_e)
+ * p_ = pointer to electromagnet_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_electromagnet_H
 #define PIEZO_SYM_electromagnet_H
@@ -48,12 +53,12 @@ typedef struct {
     .T_0 = 293.15, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     electromagnet_input_count = 2,
     electromagnet_output_count = 2,
     electromagnet_body_count = 1,
-    electromagnet_limit_count = 12,
+    electromagnet_condition_count = 12,
 };
 
 /*
@@ -62,7 +67,7 @@ enum {
 long electromagnet_states(const electromagnet_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long electromagnet_processes(const electromagnet_parameters *p_);
 
@@ -77,7 +82,7 @@ void electromagnet_initial_state(const double *u,
                                  double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
  * u[electromagnet_input_count], read: V_in [V], T_e [K]
  * out[n], written; must not overlap another argument
@@ -88,7 +93,7 @@ void electromagnet_rhs(const double *x_,
                        double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
  * u[electromagnet_input_count], read: V_in [V], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -99,7 +104,7 @@ void electromagnet_jacobian(const double *x_,
                             double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
  * u[electromagnet_input_count], read: V_in [V], T_e [K]
  * out[electromagnet_output_count], written; must not overlap another argument: supply [A], air
@@ -154,7 +159,8 @@ void electromagnet_heat(const double *x_,
                         double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
  * u[electromagnet_input_count], read: V_in [V], T_e [K]
  * out[electromagnet_processes(p_)], written; must not overlap another argument
@@ -165,7 +171,7 @@ void electromagnet_entropy_production(const double *x_,
                                       double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
  * u[electromagnet_input_count], read: V_in [V], T_e [K]
  * out[32], written; must not overlap another argument: supply.effort [V], supply.flow [A],
@@ -183,22 +189,22 @@ void electromagnet_elements(const double *x_,
                             double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
  * u[electromagnet_input_count], read: V_in [V], T_e [K]
- * out[electromagnet_limit_count], written; must not overlap another argument
- * out[0]: g + x > 0; inside, > 0
- * out[1]: A > 0; inside, > 0
- * out[2]: N > 0; inside, > 0
- * out[3]: mu > 0; inside, > 0
- * out[4]: d >= 0; inside, >= 0
- * out[5]: R >= 0; inside, >= 0
- * out[6]: lam >= 0; inside, >= 0
- * out[7]: T_e > 0; inside, > 0
- * out[8]: k > 0; inside, > 0
- * out[9]: m > 0; inside, > 0
- * out[10]: T_0 > 0; inside, > 0
- * out[11]: c > 0; inside, > 0
+ * out[electromagnet_condition_count], written; must not overlap another argument
+ * out[0] > 0 where g + x > 0
+ * out[1] > 0 where A > 0
+ * out[2] > 0 where N > 0
+ * out[3] > 0 where mu > 0
+ * out[4] >= 0 where d >= 0
+ * out[5] >= 0 where R >= 0
+ * out[6] >= 0 where lam >= 0
+ * out[7] > 0 where T_e > 0
+ * out[8] > 0 where k > 0
+ * out[9] > 0 where m > 0
+ * out[10] > 0 where T_0 > 0
+ * out[11] > 0 where c > 0
  */
 void electromagnet_margins(const double *x_,
                            const double *u,

@@ -2,13 +2,18 @@
 
 Source:  Woodson, Melcher (1968), Electromechanical Dynamics I, ch. 3
 Model:   electromagnet, spec sha256 9b4244be212754305b836d305b67a8844d9eaeab14c345563f9a22957982c0af
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (q, p, S, phi, x)
 u = (V_in, T_e)
+p_ = Parameters(), with an underscore beside the model's own p
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("q", "m", "extension of spring 'spring'"),
     Record("p", "kg*m/s", "momentum of mass 'armature'"),
@@ -48,14 +54,17 @@ INPUTS = (
     Record("T_e", "K", "temperature of the air"),
 )
 INPUT_DEFAULTS = (0.0, 293.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("supply", "A", "current given by voltage_source 'supply'"),
     Record("air", "K", "temperature of thermal_mass 'winding'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("copper", "W/K", "resistor 'copper'"),
     Record("friction", "W/K", "damper 'friction'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("winding", "K", "temperature of thermal_mass 'winding'"),
 )
@@ -93,6 +102,7 @@ ELEMENTS = (
     Record("magnet.power", "W", "power into storage 'magnet'"),
     Record("magnet.energy", "J", "energy of storage 'magnet'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("g", "m", "gap at rest"),
     Record("A", "m**2", "area of the pole"),
@@ -167,7 +177,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -221,7 +231,7 @@ def _rates(x_, u, p_, out, /):
 
 
 def outputs(x_, u, p_, /):
-    """Outputs y, one per port, conjugate to its input; shape (2, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (2, *batch)."""
     x_ = _states(x_, p_)
     g = p_.g
     A = p_.A
@@ -335,7 +345,7 @@ def heat(x_, u, p_, /):
 
 
 def entropy_production(x_, u, p_, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (2, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (2, *batch)."""
     x_ = _states(x_, p_)
     g = p_.g
     A = p_.A
@@ -365,7 +375,7 @@ def entropy_production(x_, u, p_, /):
 
 
 def elements(x_, u, p_, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (32, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (32, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     g = p_.g
@@ -440,7 +450,7 @@ def elements(x_, u, p_, /):
 
 
 def jacobian(x_, u, p_, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     g = p_.g
@@ -497,7 +507,7 @@ def jacobian(x_, u, p_, /):
 
 
 def margins(x_, u, p_, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     g = p_.g

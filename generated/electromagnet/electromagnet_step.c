@@ -3,13 +3,18 @@
  *
  * Source:  Woodson, Melcher (1968), Electromechanical Dynamics I, ch. 3
  * Model:   electromagnet, spec sha256 9b4244be212754305b836d305b67a8844d9eaeab14c345563f9a22957982c0af
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, S, phi, x)
  * u = (V_in, T_e)
+ * p_ = pointer to electromagnet_parameters, with an underscore beside the model's own p
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the

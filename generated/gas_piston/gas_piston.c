@@ -3,13 +3,18 @@
  *
  * Source:  Ruechhardt (1929), Physikalische Zeitschrift 30, 58-59, the period; van der Schaft, Maschke (2018), Entropy 20, 925
  * Model:   gas_piston, spec sha256 0a9d53c8700ddf1bb0d85a7756da7a071b3f29cf0a98843810acd07ee683352b
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (p, q, S)
  * u = (F, T_e)
+ * p_ = pointer to gas_piston_parameters, with an underscore beside the model's own p
  */
 #include "gas_piston.h"
 
@@ -27,7 +32,7 @@ long gas_piston_states(const gas_piston_parameters *restrict p_)
     return 3;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long gas_piston_processes(const gas_piston_parameters *restrict p_)
 {
     (void)p_;
@@ -46,7 +51,7 @@ void gas_piston_initial_state(const double *restrict u,
     out[2] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void gas_piston_rhs(const double *restrict x,
                     const double *restrict u,
                     const gas_piston_parameters *restrict p_,
@@ -80,7 +85,7 @@ void gas_piston_rhs(const double *restrict x,
     out[2] = heat_friction/T + lam*(T_e/T - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void gas_piston_outputs(const double *restrict x,
                         const double *restrict u,
                         const gas_piston_parameters *restrict p_,
@@ -193,7 +198,10 @@ void gas_piston_heat(const double *restrict x,
     out[0] = F_friction*v_piston;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void gas_piston_entropy_production(const double *restrict x,
                                    const double *restrict u,
                                    const gas_piston_parameters *restrict p_,
@@ -220,7 +228,7 @@ void gas_piston_entropy_production(const double *restrict x,
     out[0] = F_friction*v_piston/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void gas_piston_elements(const double *restrict x,
                          const double *restrict u,
                          const gas_piston_parameters *restrict p_,
@@ -274,7 +282,7 @@ void gas_piston_elements(const double *restrict x,
     out[19] = N*c_v*T_0*exp(S/(N*c_v))*exp((-R)/c_v*log(1.0 + A*q/V_0));
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void gas_piston_jacobian(const double *restrict x,
                          const double *restrict u,
                          const gas_piston_parameters *restrict p_,
@@ -321,7 +329,7 @@ void gas_piston_jacobian(const double *restrict x,
     out[2*n + 2] = (-heat_friction/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void gas_piston_margins(const double *restrict x,
                         const double *restrict u,
                         const gas_piston_parameters *restrict p_,

@@ -3,13 +3,18 @@
  *
  * Source:  Ruechhardt (1929), Physikalische Zeitschrift 30, 58-59, the period; van der Schaft, Maschke (2018), Entropy 20, 925
  * Model:   gas_piston, spec sha256 0a9d53c8700ddf1bb0d85a7756da7a071b3f29cf0a98843810acd07ee683352b
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (p, q, S)
  * u = (F, T_e)
+ * p_ = pointer to gas_piston_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_gas_piston_H
 #define PIEZO_SYM_gas_piston_H
@@ -44,12 +49,12 @@ typedef struct {
     .lam = 0.05, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     gas_piston_input_count = 2,
     gas_piston_output_count = 2,
     gas_piston_body_count = 1,
-    gas_piston_limit_count = 11,
+    gas_piston_condition_count = 11,
 };
 
 /*
@@ -58,7 +63,7 @@ enum {
 long gas_piston_states(const gas_piston_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long gas_piston_processes(const gas_piston_parameters *p_);
 
@@ -70,7 +75,7 @@ long gas_piston_processes(const gas_piston_parameters *p_);
 void gas_piston_initial_state(const double *u, const gas_piston_parameters *p_, double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: p [kg*m/s], q [m], S [J/K]
  * u[gas_piston_input_count], read: F [N], T_e [K]
  * out[n], written; must not overlap another argument
@@ -81,7 +86,7 @@ void gas_piston_rhs(const double *x,
                     double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: p [kg*m/s], q [m], S [J/K]
  * u[gas_piston_input_count], read: F [N], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -92,7 +97,7 @@ void gas_piston_jacobian(const double *x,
                          double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: p [kg*m/s], q [m], S [J/K]
  * u[gas_piston_input_count], read: F [N], T_e [K]
  * out[gas_piston_output_count], written; must not overlap another argument: load [m/s], vessel
@@ -145,7 +150,8 @@ void gas_piston_heat(const double *x,
                      double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: p [kg*m/s], q [m], S [J/K]
  * u[gas_piston_input_count], read: F [N], T_e [K]
  * out[gas_piston_processes(p_)], written; must not overlap another argument
@@ -156,7 +162,7 @@ void gas_piston_entropy_production(const double *x,
                                    double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: p [kg*m/s], q [m], S [J/K]
  * u[gas_piston_input_count], read: F [N], T_e [K]
  * out[20], written; must not overlap another argument: piston.effort [N], piston.flow [m/s],
@@ -171,21 +177,21 @@ void gas_piston_elements(const double *x,
                          double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: p [kg*m/s], q [m], S [J/K]
  * u[gas_piston_input_count], read: F [N], T_e [K]
- * out[gas_piston_limit_count], written; must not overlap another argument
- * out[0]: V_0 + A*q > 0; inside, > 0
- * out[1]: V_0 > 0; inside, > 0
- * out[2]: A > 0; inside, > 0
- * out[3]: N > 0; inside, > 0
- * out[4]: c_v > 0; inside, > 0
- * out[5]: R > 0; inside, > 0
- * out[6]: T_0 > 0; inside, > 0
- * out[7]: d >= 0; inside, >= 0
- * out[8]: lam >= 0; inside, >= 0
- * out[9]: T_e > 0; inside, > 0
- * out[10]: m > 0; inside, > 0
+ * out[gas_piston_condition_count], written; must not overlap another argument
+ * out[0] > 0 where V_0 + A*q > 0
+ * out[1] > 0 where V_0 > 0
+ * out[2] > 0 where A > 0
+ * out[3] > 0 where N > 0
+ * out[4] > 0 where c_v > 0
+ * out[5] > 0 where R > 0
+ * out[6] > 0 where T_0 > 0
+ * out[7] >= 0 where d >= 0
+ * out[8] >= 0 where lam >= 0
+ * out[9] > 0 where T_e > 0
+ * out[10] > 0 where m > 0
  */
 void gas_piston_margins(const double *x,
                         const double *u,

@@ -2,13 +2,18 @@
 
 Source:  Ruechhardt (1929), Physikalische Zeitschrift 30, 58-59, the period; van der Schaft, Maschke (2018), Entropy 20, 925
 Model:   gas_piston, spec sha256 0a9d53c8700ddf1bb0d85a7756da7a071b3f29cf0a98843810acd07ee683352b
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (p, q, S)
 u = (F, T_e)
+p_ = Parameters(), with an underscore beside the model's own p
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("p", "kg*m/s", "momentum of mass 'piston'"),
     Record("q", "m", "extension of storage 'gas'"),
@@ -46,13 +52,16 @@ INPUTS = (
     Record("T_e", "K", "temperature of the environment"),
 )
 INPUT_DEFAULTS = (-19.98656, 293.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("load", "m/s", "velocity at force_source 'load'"),
     Record("vessel", "K", "temperature of thermal_mass 'gas'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("friction", "W/K", "damper 'friction'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("gas", "K", "temperature of thermal_mass 'gas'"),
 )
@@ -78,6 +87,7 @@ ELEMENTS = (
     Record("gas.power", "W", "power into storage 'gas'"),
     Record("gas.energy", "J", "energy of storage 'gas'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("V_0", "m**3", "volume at q = 0"),
     Record("A", "m**2", "area of the piston"),
@@ -147,7 +157,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -191,7 +201,7 @@ def _rates(x, u, p_, out, /):
 
 
 def outputs(x, u, p_, /):
-    """Outputs y, one per port, conjugate to its input; shape (2, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (2, *batch)."""
     x = _states(x, p_)
     V_0 = p_.V_0
     A = p_.A
@@ -299,7 +309,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (1, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (1, *batch)."""
     x = _states(x, p_)
     V_0 = p_.V_0
     A = p_.A
@@ -324,7 +334,7 @@ def entropy_production(x, u, p_, /):
 
 
 def elements(x, u, p_, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (20, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (20, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     V_0 = p_.V_0
@@ -378,7 +388,7 @@ def elements(x, u, p_, /):
 
 
 def jacobian(x, u, p_, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     V_0 = p_.V_0
@@ -421,7 +431,7 @@ def jacobian(x, u, p_, /):
 
 
 def margins(x, u, p_, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     V_0 = p_.V_0

@@ -3,13 +3,18 @@
  *
  * Source:  Ruechhardt (1929), Physikalische Zeitschrift 30, 58-59, the period; van der Schaft, Maschke (2018), Entropy 20, 925
  * Model:   gas_piston, spec sha256 0a9d53c8700ddf1bb0d85a7756da7a071b3f29cf0a98843810acd07ee683352b
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (p, q, S)
  * u = (F, T_e)
+ * p_ = pointer to gas_piston_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_gas_piston_STEP_H
 #define PIEZO_SYM_gas_piston_STEP_H
@@ -35,7 +40,7 @@ long gas_piston_step_size(const gas_piston_parameters *p_);
  * u[gas_piston_input_count], read: F [N], T_e [K]; constant during the step
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by load, vessel; then heat [J], and then entropy
- *     produced [J/K], by friction; then the entropy [J/K] that each heat exchange brings
+ *     produced [J/K], by friction; then entropy [J/K] that heat exchange brings to gas
  * space[gas_piston_step_size(p_)], read and written: set it to zero before the first step,
  *     then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared

@@ -3,13 +3,18 @@
  *
  * Source:  Ramirez, Maschke, Sbarbaro (2013), Chem. Eng. Sci. 89, 223-234, the heat exchanger
  * Model:   heat_exchanger, spec sha256 81da265b96a9585ebb1056051f48674761b82597e707def9ebb654e693d5bec0
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, sigma, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (S_hot, S_cold)
  * u = ()
+ * p = pointer to heat_exchanger_parameters
  */
 #include "heat_exchanger.h"
 
@@ -27,7 +32,7 @@ long heat_exchanger_states(const heat_exchanger_parameters *restrict p)
     return 2;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long heat_exchanger_processes(const heat_exchanger_parameters *restrict p)
 {
     (void)p;
@@ -49,7 +54,7 @@ void heat_exchanger_initial_state(const double *restrict u,
     out[1] = c_2*log(T_2/T_0);
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void heat_exchanger_rhs(const double *restrict x,
                         const double *restrict u,
                         const heat_exchanger_parameters *restrict p,
@@ -74,7 +79,7 @@ void heat_exchanger_rhs(const double *restrict x,
     out[1] = heat_contact/T_cold;
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void heat_exchanger_outputs(const double *restrict x,
                             const double *restrict u,
                             const heat_exchanger_parameters *restrict p,
@@ -160,7 +165,10 @@ void heat_exchanger_heat(const double *restrict x,
     out[0] = s_contact*T_hot;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void heat_exchanger_entropy_production(const double *restrict x,
                                        const double *restrict u,
                                        const heat_exchanger_parameters *restrict p,
@@ -182,7 +190,7 @@ void heat_exchanger_entropy_production(const double *restrict x,
     out[0] = s_contact*(T_hot - T_cold)/T_cold;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void heat_exchanger_elements(const double *restrict x,
                              const double *restrict u,
                              const heat_exchanger_parameters *restrict p,
@@ -218,7 +226,7 @@ void heat_exchanger_elements(const double *restrict x,
     out[9] = s_contact*T_hot;
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void heat_exchanger_jacobian(const double *restrict x,
                              const double *restrict u,
                              const heat_exchanger_parameters *restrict p,
@@ -257,7 +265,7 @@ void heat_exchanger_jacobian(const double *restrict x,
         - heat_contact/power_2(T_cold)*dT_cold_dS_cold;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void heat_exchanger_margins(const double *restrict x,
                             const double *restrict u,
                             const heat_exchanger_parameters *restrict p,

@@ -3,13 +3,18 @@
  *
  * Source:  Ramirez, Maschke, Sbarbaro (2013), Chem. Eng. Sci. 89, 223-234, the heat exchanger
  * Model:   heat_exchanger, spec sha256 81da265b96a9585ebb1056051f48674761b82597e707def9ebb654e693d5bec0
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, sigma, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (S_hot, S_cold)
  * u = ()
+ * p = pointer to heat_exchanger_parameters
  */
 #ifndef PIEZO_SYM_heat_exchanger_H
 #define PIEZO_SYM_heat_exchanger_H
@@ -38,12 +43,12 @@ typedef struct {
     .T_2 = 290.0, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     heat_exchanger_input_count = 0,
     heat_exchanger_output_count = 0,
     heat_exchanger_body_count = 2,
-    heat_exchanger_limit_count = 6,
+    heat_exchanger_condition_count = 6,
 };
 
 /*
@@ -52,7 +57,7 @@ enum {
 long heat_exchanger_states(const heat_exchanger_parameters *p);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long heat_exchanger_processes(const heat_exchanger_parameters *p);
 
@@ -66,7 +71,7 @@ void heat_exchanger_initial_state(const double *u,
                                   double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: S_hot [J/K], S_cold [J/K]
  * u[heat_exchanger_input_count], read
  * out[n], written; must not overlap another argument
@@ -77,7 +82,7 @@ void heat_exchanger_rhs(const double *x,
                         double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: S_hot [J/K], S_cold [J/K]
  * u[heat_exchanger_input_count], read
  * out[n*n], written; must not overlap another argument
@@ -88,7 +93,7 @@ void heat_exchanger_jacobian(const double *x,
                              double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: S_hot [J/K], S_cold [J/K]
  * u[heat_exchanger_input_count], read
  * out[heat_exchanger_output_count], written; must not overlap another argument
@@ -143,7 +148,8 @@ void heat_exchanger_heat(const double *x,
                          double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: S_hot [J/K], S_cold [J/K]
  * u[heat_exchanger_input_count], read
  * out[heat_exchanger_processes(p)], written; must not overlap another argument
@@ -154,7 +160,7 @@ void heat_exchanger_entropy_production(const double *x,
                                        double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: S_hot [J/K], S_cold [J/K]
  * u[heat_exchanger_input_count], read
  * out[10], written; must not overlap another argument: hot.effort [K], hot.flow [W/K],
@@ -167,16 +173,16 @@ void heat_exchanger_elements(const double *x,
                              double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: S_hot [J/K], S_cold [J/K]
  * u[heat_exchanger_input_count], read
- * out[heat_exchanger_limit_count], written; must not overlap another argument
- * out[0]: lam >= 0; inside, >= 0
- * out[1]: T_1 > 0; inside, > 0
- * out[2]: T_2 > 0; inside, > 0
- * out[3]: T_0 > 0; inside, > 0
- * out[4]: c_1 > 0; inside, > 0
- * out[5]: c_2 > 0; inside, > 0
+ * out[heat_exchanger_condition_count], written; must not overlap another argument
+ * out[0] >= 0 where lam >= 0
+ * out[1] > 0 where T_1 > 0
+ * out[2] > 0 where T_2 > 0
+ * out[3] > 0 where T_0 > 0
+ * out[4] > 0 where c_1 > 0
+ * out[5] > 0 where c_2 > 0
  */
 void heat_exchanger_margins(const double *x,
                             const double *u,

@@ -2,13 +2,18 @@
 
 Source:  Ramirez, Maschke, Sbarbaro (2013), Chem. Eng. Sci. 89, 223-234, the heat exchanger
 Model:   heat_exchanger, spec sha256 81da265b96a9585ebb1056051f48674761b82597e707def9ebb654e693d5bec0
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, sigma, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (S_hot, S_cold)
 u = ()
+p = Parameters()
 """
 
 from dataclasses import dataclass
@@ -36,16 +41,20 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("S_hot", "J/K", "entropy of thermal_mass 'hot'"),
     Record("S_cold", "J/K", "entropy of thermal_mass 'cold'"),
 )
 INPUTS = ()
 INPUT_DEFAULTS = ()
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = ()
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("contact", "W/K", "conduction 'contact'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("hot", "K", "temperature of thermal_mass 'hot'"),
     Record("cold", "K", "temperature of thermal_mass 'cold'"),
@@ -62,6 +71,7 @@ ELEMENTS = (
     Record("contact.effort", "K", "temperature difference over conduction 'contact'"),
     Record("contact.power", "W", "heat from first to second body by conduction 'contact'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("c_1", "J/K", "heat capacity of the hot body"),
     Record("c_2", "J/K", "heat capacity of the cold body"),
@@ -127,7 +137,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -161,7 +171,7 @@ def _rates(x, u, p, out, /):
 
 
 def outputs(x, u, p, /):
-    """Outputs y, one per port, conjugate to its input; shape (0, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (0, *batch)."""
     x = _states(x, p)
     out = np.empty((0, *x.shape[1:]))
     return out
@@ -232,7 +242,7 @@ def heat(x, u, p, /):
 
 
 def entropy_production(x, u, p, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (1, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (1, *batch)."""
     x = _states(x, p)
     c_1 = p.c_1
     c_2 = p.c_2
@@ -252,7 +262,7 @@ def entropy_production(x, u, p, /):
 
 
 def elements(x, u, p, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (10, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (10, *batch)."""
     x = _states(x, p)
     c_1 = p.c_1
     c_2 = p.c_2
@@ -286,7 +296,7 @@ def elements(x, u, p, /):
 
 
 def jacobian(x, u, p, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p)
     c_1 = p.c_1
     c_2 = p.c_2
@@ -318,7 +328,7 @@ def jacobian(x, u, p, /):
 
 
 def margins(x, u, p, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p)
     c_1 = p.c_1
     c_2 = p.c_2

@@ -3,13 +3,18 @@
  *
  * Source:  Ramirez, Maschke, Sbarbaro (2013), Chem. Eng. Sci. 89, 223-234, the heat exchanger
  * Model:   heat_exchanger, spec sha256 81da265b96a9585ebb1056051f48674761b82597e707def9ebb654e693d5bec0
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, sigma, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (S_hot, S_cold)
  * u = ()
+ * p = pointer to heat_exchanger_parameters
  */
 #ifndef PIEZO_SYM_heat_exchanger_STEP_H
 #define PIEZO_SYM_heat_exchanger_STEP_H
@@ -23,7 +28,7 @@ extern "C" {
 /*
  * Size of `space`, the working memory of a step, in numbers.
  */
-long heat_exchanger_step_size(const heat_exchanger_parameters *p_);
+long heat_exchanger_step_size(const heat_exchanger_parameters *p);
 
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
@@ -36,7 +41,7 @@ long heat_exchanger_step_size(const heat_exchanger_parameters *p_);
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by no port; then heat [J], and then entropy produced
  *     [J/K], by contact
- * space[heat_exchanger_step_size(p_)], read and written: set it to zero before the first step,
+ * space[heat_exchanger_step_size(p)], read and written: set it to zero before the first step,
  *     then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared
  *
@@ -68,7 +73,7 @@ long heat_exchanger_step_size(const heat_exchanger_parameters *p_);
 int heat_exchanger_step(double *x,
                         const double *u,
                         double h,
-                        const heat_exchanger_parameters *p_,
+                        const heat_exchanger_parameters *p,
                         double *booked,
                         double *space);
 

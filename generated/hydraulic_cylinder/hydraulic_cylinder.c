@@ -3,13 +3,18 @@
  *
  * Source:  Merritt (1967), Hydraulic Control Systems, ch. 3 and 6
  * Model:   hydraulic_cylinder, spec sha256 9f77f306d723282ed74a083c6c8af89eb009af63f004a1308f102f81527e5387
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (V, p, q, S)
  * u = (p_in, F, T_e)
+ * p_ = pointer to hydraulic_cylinder_parameters, with an underscore beside the model's own p
  */
 #include "hydraulic_cylinder.h"
 
@@ -37,7 +42,7 @@ long hydraulic_cylinder_states(const hydraulic_cylinder_parameters *restrict p_)
     return 4;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long hydraulic_cylinder_processes(const hydraulic_cylinder_parameters *restrict p_)
 {
     (void)p_;
@@ -57,7 +62,7 @@ void hydraulic_cylinder_initial_state(const double *restrict u,
     out[3] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void hydraulic_cylinder_rhs(const double *restrict x,
                             const double *restrict u,
                             const hydraulic_cylinder_parameters *restrict p_,
@@ -105,7 +110,7 @@ void hydraulic_cylinder_rhs(const double *restrict x,
     out[3] = (heat_orifice + heat_friction)/T + lam*(T_e/T - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void hydraulic_cylinder_outputs(const double *restrict x,
                                 const double *restrict u,
                                 const hydraulic_cylinder_parameters *restrict p_,
@@ -244,7 +249,10 @@ void hydraulic_cylinder_heat(const double *restrict x,
     out[1] = F_friction*v_load;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void hydraulic_cylinder_entropy_production(const double *restrict x,
                                            const double *restrict u,
                                            const hydraulic_cylinder_parameters *restrict p_,
@@ -277,7 +285,7 @@ void hydraulic_cylinder_entropy_production(const double *restrict x,
     out[1] = F_friction*v_load/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void hydraulic_cylinder_elements(const double *restrict x,
                                  const double *restrict u,
                                  const hydraulic_cylinder_parameters *restrict p_,
@@ -363,7 +371,7 @@ void hydraulic_cylinder_elements(const double *restrict x,
     out[37] = -lam*(T_e - T);
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void hydraulic_cylinder_jacobian(const double *restrict x,
                                  const double *restrict u,
                                  const hydraulic_cylinder_parameters *restrict p_,
@@ -425,7 +433,7 @@ void hydraulic_cylinder_jacobian(const double *restrict x,
     out[3*n + 3] = (-(heat_orifice + heat_friction)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void hydraulic_cylinder_margins(const double *restrict x,
                                 const double *restrict u,
                                 const hydraulic_cylinder_parameters *restrict p_,

@@ -3,13 +3,18 @@
  *
  * Source:  Merritt (1967), Hydraulic Control Systems, ch. 3 and 6
  * Model:   hydraulic_cylinder, spec sha256 9f77f306d723282ed74a083c6c8af89eb009af63f004a1308f102f81527e5387
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (V, p, q, S)
  * u = (p_in, F, T_e)
+ * p_ = pointer to hydraulic_cylinder_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_hydraulic_cylinder_H
 #define PIEZO_SYM_hydraulic_cylinder_H
@@ -52,12 +57,12 @@ typedef struct {
     .T_0 = 313.15, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     hydraulic_cylinder_input_count = 3,
     hydraulic_cylinder_output_count = 3,
     hydraulic_cylinder_body_count = 1,
-    hydraulic_cylinder_limit_count = 13,
+    hydraulic_cylinder_condition_count = 13,
 };
 
 /*
@@ -66,7 +71,7 @@ enum {
 long hydraulic_cylinder_states(const hydraulic_cylinder_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long hydraulic_cylinder_processes(const hydraulic_cylinder_parameters *p_);
 
@@ -80,7 +85,7 @@ void hydraulic_cylinder_initial_state(const double *u,
                                       double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]
  * out[n], written; must not overlap another argument
@@ -91,7 +96,7 @@ void hydraulic_cylinder_rhs(const double *x,
                             double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -102,7 +107,7 @@ void hydraulic_cylinder_jacobian(const double *x,
                                  double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]
  * out[hydraulic_cylinder_output_count], written; must not overlap another argument: supply
@@ -157,7 +162,8 @@ void hydraulic_cylinder_heat(const double *x,
                              double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]
  * out[hydraulic_cylinder_processes(p_)], written; must not overlap another argument
@@ -168,7 +174,7 @@ void hydraulic_cylinder_entropy_production(const double *x,
                                            double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]
  * out[38], written; must not overlap another argument: supply.effort [Pa], supply.flow
@@ -188,23 +194,23 @@ void hydraulic_cylinder_elements(const double *x,
                                  double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]
- * out[hydraulic_cylinder_limit_count], written; must not overlap another argument
- * out[0]: C_d >= 0; inside, >= 0
- * out[1]: a >= 0; inside, >= 0
- * out[2]: rho > 0; inside, > 0
- * out[3]: p_t > 0; inside, > 0
- * out[4]: d >= 0; inside, >= 0
- * out[5]: k_s > 0; inside, > 0
- * out[6]: x_s > 0; inside, > 0
- * out[7]: lam >= 0; inside, >= 0
- * out[8]: T_e > 0; inside, > 0
- * out[9]: C_h > 0; inside, > 0
- * out[10]: m > 0; inside, > 0
- * out[11]: T_0 > 0; inside, > 0
- * out[12]: c > 0; inside, > 0
+ * out[hydraulic_cylinder_condition_count], written; must not overlap another argument
+ * out[0] >= 0 where C_d >= 0
+ * out[1] >= 0 where a >= 0
+ * out[2] > 0 where rho > 0
+ * out[3] > 0 where p_t > 0
+ * out[4] >= 0 where d >= 0
+ * out[5] > 0 where k_s > 0
+ * out[6] > 0 where x_s > 0
+ * out[7] >= 0 where lam >= 0
+ * out[8] > 0 where T_e > 0
+ * out[9] > 0 where C_h > 0
+ * out[10] > 0 where m > 0
+ * out[11] > 0 where T_0 > 0
+ * out[12] > 0 where c > 0
  */
 void hydraulic_cylinder_margins(const double *x,
                                 const double *u,

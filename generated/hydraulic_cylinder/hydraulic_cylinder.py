@@ -2,13 +2,18 @@
 
 Source:  Merritt (1967), Hydraulic Control Systems, ch. 3 and 6
 Model:   hydraulic_cylinder, spec sha256 9f77f306d723282ed74a083c6c8af89eb009af63f004a1308f102f81527e5387
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, sigma, exergy, environment, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (V, p, q, S)
 u = (p_in, F, T_e)
+p_ = Parameters(), with an underscore beside the model's own p
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("V", "m**3", "volume of accumulator 'chamber'"),
     Record("p", "kg*m/s", "momentum of mass 'load'"),
@@ -48,15 +54,18 @@ INPUTS = (
     Record("T_e", "K", "temperature of the air"),
 )
 INPUT_DEFAULTS = (0.0, 0.0, 313.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("supply", "m**3/s", "flow given by pressure_source 'supply'"),
     Record("push", "m/s", "velocity at force_source 'push'"),
     Record("air", "K", "temperature of thermal_mass 'oil'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("orifice", "W/K", "orifice 'orifice'"),
     Record("friction", "W/K", "damper 'friction'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("oil", "K", "temperature of thermal_mass 'oil'"),
 )
@@ -100,6 +109,7 @@ ELEMENTS = (
     Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
     Record("air.power", "W", "power into ambient 'air'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("C_d", "1", "discharge coefficient"),
     Record("a", "m**2", "area of the orifice"),
@@ -179,7 +189,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -237,7 +247,7 @@ def _rates(x, u, p_, out, /):
 
 
 def outputs(x, u, p_, /):
-    """Outputs y, one per port, conjugate to its input; shape (3, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (3, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     C_d = p_.C_d
@@ -370,7 +380,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (2, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (2, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     C_d = p_.C_d
@@ -403,7 +413,7 @@ def entropy_production(x, u, p_, /):
 
 
 def elements(x, u, p_, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (38, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (38, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     C_d = p_.C_d
@@ -489,7 +499,7 @@ def elements(x, u, p_, /):
 
 
 def jacobian(x, u, p_, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     C_d = p_.C_d
@@ -547,7 +557,7 @@ def jacobian(x, u, p_, /):
 
 
 def margins(x, u, p_, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     C_d = p_.C_d

@@ -3,13 +3,18 @@
  *
  * Source:  Merritt (1967), Hydraulic Control Systems, ch. 3 and 6
  * Model:   hydraulic_cylinder, spec sha256 9f77f306d723282ed74a083c6c8af89eb009af63f004a1308f102f81527e5387
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (V, p, q, S)
  * u = (p_in, F, T_e)
+ * p_ = pointer to hydraulic_cylinder_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_hydraulic_cylinder_STEP_H
 #define PIEZO_SYM_hydraulic_cylinder_STEP_H
@@ -35,8 +40,8 @@ long hydraulic_cylinder_step_size(const hydraulic_cylinder_parameters *p_);
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]; constant during the step
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by supply, push, air; then heat [J], and then entropy
- *     produced [J/K], by orifice, friction; then the entropy [J/K] that each heat exchange
- *     brings
+ *     produced [J/K], by orifice, friction; then entropy [J/K] that heat exchange brings to
+ *     oil
  * space[hydraulic_cylinder_step_size(p_)], read and written: set it to zero before the first
  *     step, then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared

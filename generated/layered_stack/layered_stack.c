@@ -3,13 +3,18 @@
  *
  * Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1, cut into layers; conductance between them: a choice
  * Model:   layered_stack, spec sha256 b46e92f413d7be38d2b0d17c8e7e220000a9ea90d48a027e94b79d81ff92ba5e
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q_1, p_1, Q_1, phi_1, S_1, q_2, p_2, Q_2, phi_2, S_2, q_3, p_3, Q_3, phi_3, S_3)
  * u = (F_ext, V_in, T_e)
+ * p = pointer to layered_stack_parameters
  */
 #include "layered_stack.h"
 
@@ -32,7 +37,7 @@ long layered_stack_states(const layered_stack_parameters *restrict p)
     return 15;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long layered_stack_processes(const layered_stack_parameters *restrict p)
 {
     (void)p;
@@ -64,7 +69,7 @@ void layered_stack_initial_state(const double *restrict u,
     out[14] = c_0*log(T_e/T_0);
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void layered_stack_rhs(const double *restrict x,
                        const double *restrict u,
                        const layered_stack_parameters *restrict p,
@@ -187,7 +192,7 @@ void layered_stack_rhs(const double *restrict x,
         + lam*(T_e/T_body_3 - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void layered_stack_outputs(const double *restrict x,
                            const double *restrict u,
                            const layered_stack_parameters *restrict p,
@@ -404,7 +409,10 @@ void layered_stack_heat(const double *restrict x,
     out[7] = s_contact_2*T_body_2;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void layered_stack_entropy_production(const double *restrict x,
                                       const double *restrict u,
                                       const layered_stack_parameters *restrict p,
@@ -476,7 +484,7 @@ void layered_stack_entropy_production(const double *restrict x,
     out[7] = s_contact_2*(T_body_2 - T_body_3)/T_body_3;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void layered_stack_elements(const double *restrict x,
                             const double *restrict u,
                             const layered_stack_parameters *restrict p,
@@ -713,7 +721,7 @@ void layered_stack_elements(const double *restrict x,
     out[105] = -(i_hysteron_1 + i_hysteron_2 + i_hysteron_3)*V_in;
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void layered_stack_jacobian(const double *restrict x,
                             const double *restrict u,
                             const layered_stack_parameters *restrict p,
@@ -924,7 +932,7 @@ void layered_stack_jacobian(const double *restrict x,
         + (-(heat_hysteron_3 + heat_damper_3 + heat_contact_2)/power_2(T_body_3) - lam*T_e/power_2(T_body_3))*dT_body_3_minus_T_0_dS_3;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void layered_stack_margins(const double *restrict x,
                            const double *restrict u,
                            const layered_stack_parameters *restrict p,

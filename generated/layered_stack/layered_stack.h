@@ -3,13 +3,18 @@
  *
  * Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1, cut into layers; conductance between them: a choice
  * Model:   layered_stack, spec sha256 b46e92f413d7be38d2b0d17c8e7e220000a9ea90d48a027e94b79d81ff92ba5e
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q_1, p_1, Q_1, phi_1, S_1, q_2, p_2, Q_2, phi_2, S_2, q_3, p_3, Q_3, phi_3, S_3)
  * u = (F_ext, V_in, T_e)
+ * p = pointer to layered_stack_parameters
  */
 #ifndef PIEZO_SYM_layered_stack_H
 #define PIEZO_SYM_layered_stack_H
@@ -50,12 +55,12 @@ typedef struct {
     .lam_l = 6.0, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     layered_stack_input_count = 3,
     layered_stack_output_count = 4,
     layered_stack_body_count = 3,
-    layered_stack_limit_count = 15,
+    layered_stack_condition_count = 15,
 };
 
 /*
@@ -64,7 +69,7 @@ enum {
 long layered_stack_states(const layered_stack_parameters *p);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long layered_stack_processes(const layered_stack_parameters *p);
 
@@ -80,7 +85,7 @@ void layered_stack_initial_state(const double *u,
                                  double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
  *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
  * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
@@ -92,7 +97,7 @@ void layered_stack_rhs(const double *x,
                        double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
  *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
  * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
@@ -104,7 +109,7 @@ void layered_stack_jacobian(const double *x,
                             double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
  *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
  * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
@@ -164,7 +169,8 @@ void layered_stack_heat(const double *x,
                         double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
  *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
  * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
@@ -176,7 +182,7 @@ void layered_stack_entropy_production(const double *x,
                                       double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
  *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
  * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
@@ -215,26 +221,26 @@ void layered_stack_elements(const double *x,
                             double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
  *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
  * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[layered_stack_limit_count], written; must not overlap another argument
- * out[0]: T_body_1 > T_0; inside, > 0
- * out[1]: T_body_2 > T_0; inside, > 0
- * out[2]: T_body_3 > T_0; inside, > 0
- * out[3]: T_e > T_0; inside, > 0
- * out[4]: d >= 0; inside, >= 0
- * out[5]: rho >= 0; inside, >= 0
- * out[6]: i_0 >= 0; inside, >= 0
- * out[7]: lam >= 0; inside, >= 0
- * out[8]: lam_l >= 0; inside, >= 0
- * out[9]: k > 0; inside, > 0
- * out[10]: M > 0; inside, > 0
- * out[11]: C > 0; inside, > 0
- * out[12]: L > 0; inside, > 0
- * out[13]: T_0 > 0; inside, > 0
- * out[14]: c_0 > 0; inside, > 0
+ * out[layered_stack_condition_count], written; must not overlap another argument
+ * out[0] > 0 where T_body_1 > T_0
+ * out[1] > 0 where T_body_2 > T_0
+ * out[2] > 0 where T_body_3 > T_0
+ * out[3] > 0 where T_e > T_0
+ * out[4] >= 0 where d >= 0
+ * out[5] >= 0 where rho >= 0
+ * out[6] >= 0 where i_0 >= 0
+ * out[7] >= 0 where lam >= 0
+ * out[8] >= 0 where lam_l >= 0
+ * out[9] > 0 where k > 0
+ * out[10] > 0 where M > 0
+ * out[11] > 0 where C > 0
+ * out[12] > 0 where L > 0
+ * out[13] > 0 where T_0 > 0
+ * out[14] > 0 where c_0 > 0
  */
 void layered_stack_margins(const double *x,
                            const double *u,

@@ -2,13 +2,18 @@
 
 Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1, cut into layers; conductance between them: a choice
 Model:   layered_stack, spec sha256 b46e92f413d7be38d2b0d17c8e7e220000a9ea90d48a027e94b79d81ff92ba5e
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (q_1, p_1, Q_1, phi_1, S_1, q_2, p_2, Q_2, phi_2, S_2, q_3, p_3, Q_3, phi_3, S_3)
 u = (F_ext, V_in, T_e)
+p = Parameters()
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("q_1", "m", "extension of spring 'spring_1'"),
     Record("p_1", "kg*m/s", "momentum of mass 'mass_1'"),
@@ -59,12 +65,14 @@ INPUTS = (
     Record("T_e", "K", "temperature of the environment"),
 )
 INPUT_DEFAULTS = (0.0, 0.0, 298.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("load", "m/s", "velocity at force_source 'load'"),
     Record("supply", "A", "current given by voltage_source 'supply'"),
     Record("base", "K", "temperature of thermal_mass 'body_1'"),
     Record("top", "K", "temperature of thermal_mass 'body_3'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("hysteron_1", "W/K", "hysteron 'hysteron_1'"),
     Record("damper_1", "W/K", "damper 'damper_1'"),
@@ -75,6 +83,7 @@ PROCESSES = (
     Record("contact_1", "W/K", "conduction 'contact_1'"),
     Record("contact_2", "W/K", "conduction 'contact_2'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("body_1", "K", "temperature of thermal_mass 'body_1'"),
     Record("body_2", "K", "temperature of thermal_mass 'body_2'"),
@@ -188,6 +197,7 @@ ELEMENTS = (
     Record("supply.flow", "A", "current of voltage_source 'supply'"),
     Record("supply.power", "W", "power into voltage_source 'supply'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("M", "kg", "mass of a layer"),
     Record("k", "N/m", "stiffness of a layer"),
@@ -274,7 +284,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -402,7 +412,7 @@ def _rates(x, u, p, out, /):
 
 
 def outputs(x, u, p, /):
-    """Outputs y, one per port, conjugate to its input; shape (4, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (4, *batch)."""
     x = _states(x, p)
     M = p.M
     L = p.L
@@ -589,7 +599,7 @@ def heat(x, u, p, /):
 
 
 def entropy_production(x, u, p, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (8, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (8, *batch)."""
     x = _states(x, p)
     M = p.M
     d = p.d
@@ -650,7 +660,7 @@ def entropy_production(x, u, p, /):
 
 
 def elements(x, u, p, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (106, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (106, *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     M = p.M
@@ -874,7 +884,7 @@ def elements(x, u, p, /):
 
 
 def jacobian(x, u, p, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     M = p.M
@@ -1064,7 +1074,7 @@ def jacobian(x, u, p, /):
 
 
 def margins(x, u, p, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     M = p.M

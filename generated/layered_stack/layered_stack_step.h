@@ -3,13 +3,18 @@
  *
  * Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1, cut into layers; conductance between them: a choice
  * Model:   layered_stack, spec sha256 b46e92f413d7be38d2b0d17c8e7e220000a9ea90d48a027e94b79d81ff92ba5e
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q_1, p_1, Q_1, phi_1, S_1, q_2, p_2, Q_2, phi_2, S_2, q_3, p_3, Q_3, phi_3, S_3)
  * u = (F_ext, V_in, T_e)
+ * p = pointer to layered_stack_parameters
  */
 #ifndef PIEZO_SYM_layered_stack_STEP_H
 #define PIEZO_SYM_layered_stack_STEP_H
@@ -23,7 +28,7 @@ extern "C" {
 /*
  * Size of `space`, the working memory of a step, in numbers.
  */
-long layered_stack_step_size(const layered_stack_parameters *p_);
+long layered_stack_step_size(const layered_stack_parameters *p);
 
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
@@ -38,8 +43,9 @@ long layered_stack_step_size(const layered_stack_parameters *p_);
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by load, supply, base, top; then heat [J], and then
  *     entropy produced [J/K], by hysteron_1, damper_1, hysteron_2, damper_2, hysteron_3,
- *     damper_3, contact_1, contact_2; then the entropy [J/K] that each heat exchange brings
- * space[layered_stack_step_size(p_)], read and written: set it to zero before the first step,
+ *     damper_3, contact_1, contact_2; then entropy [J/K] that heat exchange brings to body_1,
+ *     body_3
+ * space[layered_stack_step_size(p)], read and written: set it to zero before the first step,
  *     then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared
  *
@@ -71,7 +77,7 @@ long layered_stack_step_size(const layered_stack_parameters *p_);
 int layered_stack_step(double *x,
                        const double *u,
                        double h,
-                       const layered_stack_parameters *p_,
+                       const layered_stack_parameters *p,
                        double *booked,
                        double *space);
 

@@ -3,13 +3,18 @@
  *
  * Source:  Ramirez, Maschke, Sbarbaro (2013), Eur. J. Control 19, 513-520, the mass-spring-damper
  * Model:   oscillator, spec sha256 98f74415ae4d927ffd7693687e1755d27c6ee4baa18ca60809e3c3d10d605268
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, S)
  * u = (F)
+ * p_ = pointer to oscillator_parameters, with an underscore beside the model's own p
  */
 #include "oscillator.h"
 
@@ -27,7 +32,7 @@ long oscillator_states(const oscillator_parameters *restrict p_)
     return 3;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long oscillator_processes(const oscillator_parameters *restrict p_)
 {
     (void)p_;
@@ -46,7 +51,7 @@ void oscillator_initial_state(const double *restrict u,
     out[2] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void oscillator_rhs(const double *restrict x,
                     const double *restrict u,
                     const oscillator_parameters *restrict p_,
@@ -75,7 +80,7 @@ void oscillator_rhs(const double *restrict x,
     out[2] = heat_damper/T;
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void oscillator_outputs(const double *restrict x,
                         const double *restrict u,
                         const oscillator_parameters *restrict p_,
@@ -158,7 +163,10 @@ void oscillator_heat(const double *restrict x,
     out[0] = F_damper*v_mass;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void oscillator_entropy_production(const double *restrict x,
                                    const double *restrict u,
                                    const oscillator_parameters *restrict p_,
@@ -180,7 +188,7 @@ void oscillator_entropy_production(const double *restrict x,
     out[0] = F_damper*v_mass/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void oscillator_elements(const double *restrict x,
                          const double *restrict u,
                          const oscillator_parameters *restrict p_,
@@ -228,7 +236,7 @@ void oscillator_elements(const double *restrict x,
     out[18] = -v_mass*F;
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void oscillator_jacobian(const double *restrict x,
                          const double *restrict u,
                          const oscillator_parameters *restrict p_,
@@ -265,7 +273,7 @@ void oscillator_jacobian(const double *restrict x,
     out[2*n + 2] = -heat_damper/power_2(T)*dT_dS;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void oscillator_margins(const double *restrict x,
                         const double *restrict u,
                         const oscillator_parameters *restrict p_,

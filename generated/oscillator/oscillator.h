@@ -3,13 +3,18 @@
  *
  * Source:  Ramirez, Maschke, Sbarbaro (2013), Eur. J. Control 19, 513-520, the mass-spring-damper
  * Model:   oscillator, spec sha256 98f74415ae4d927ffd7693687e1755d27c6ee4baa18ca60809e3c3d10d605268
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, S)
  * u = (F)
+ * p_ = pointer to oscillator_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_oscillator_H
 #define PIEZO_SYM_oscillator_H
@@ -36,12 +41,12 @@ typedef struct {
     .c = 2.0, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     oscillator_input_count = 1,
     oscillator_output_count = 1,
     oscillator_body_count = 1,
-    oscillator_limit_count = 5,
+    oscillator_condition_count = 5,
 };
 
 /*
@@ -50,7 +55,7 @@ enum {
 long oscillator_states(const oscillator_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long oscillator_processes(const oscillator_parameters *p_);
 
@@ -62,7 +67,7 @@ long oscillator_processes(const oscillator_parameters *p_);
 void oscillator_initial_state(const double *u, const oscillator_parameters *p_, double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: q [m], p [kg*m/s], S [J/K]
  * u[oscillator_input_count], read: F [N]
  * out[n], written; must not overlap another argument
@@ -73,7 +78,7 @@ void oscillator_rhs(const double *x,
                     double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: q [m], p [kg*m/s], S [J/K]
  * u[oscillator_input_count], read: F [N]
  * out[n*n], written; must not overlap another argument
@@ -84,7 +89,7 @@ void oscillator_jacobian(const double *x,
                          double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: q [m], p [kg*m/s], S [J/K]
  * u[oscillator_input_count], read: F [N]
  * out[oscillator_output_count], written; must not overlap another argument: hand [m/s]
@@ -136,7 +141,8 @@ void oscillator_heat(const double *x,
                      double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], S [J/K]
  * u[oscillator_input_count], read: F [N]
  * out[oscillator_processes(p_)], written; must not overlap another argument
@@ -147,7 +153,7 @@ void oscillator_entropy_production(const double *x,
                                    double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], S [J/K]
  * u[oscillator_input_count], read: F [N]
  * out[19], written; must not overlap another argument: spring.effort [N], spring.flow [m/s],
@@ -162,15 +168,15 @@ void oscillator_elements(const double *x,
                          double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: q [m], p [kg*m/s], S [J/K]
  * u[oscillator_input_count], read: F [N]
- * out[oscillator_limit_count], written; must not overlap another argument
- * out[0]: d >= 0; inside, >= 0
- * out[1]: k > 0; inside, > 0
- * out[2]: m > 0; inside, > 0
- * out[3]: T_0 > 0; inside, > 0
- * out[4]: c > 0; inside, > 0
+ * out[oscillator_condition_count], written; must not overlap another argument
+ * out[0] >= 0 where d >= 0
+ * out[1] > 0 where k > 0
+ * out[2] > 0 where m > 0
+ * out[3] > 0 where T_0 > 0
+ * out[4] > 0 where c > 0
  */
 void oscillator_margins(const double *x,
                         const double *u,

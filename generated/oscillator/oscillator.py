@@ -2,13 +2,18 @@
 
 Source:  Ramirez, Maschke, Sbarbaro (2013), Eur. J. Control 19, 513-520, the mass-spring-damper
 Model:   oscillator, spec sha256 98f74415ae4d927ffd7693687e1755d27c6ee4baa18ca60809e3c3d10d605268
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (q, p, S)
 u = (F)
+p_ = Parameters(), with an underscore beside the model's own p
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("q", "m", "extension of spring 'spring'"),
     Record("p", "kg*m/s", "momentum of mass 'mass'"),
@@ -45,12 +51,15 @@ INPUTS = (
     Record("F", "N", "force on the mass"),
 )
 INPUT_DEFAULTS = (0.0,)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("hand", "m/s", "velocity at force_source 'hand'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("damper", "W/K", "damper 'damper'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
@@ -75,6 +84,7 @@ ELEMENTS = (
     Record("hand.flow", "m/s", "velocity of force_source 'hand'"),
     Record("hand.power", "W", "power into force_source 'hand'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("m", "kg", "mass"),
     Record("k", "N/m", "stiffness"),
@@ -131,7 +141,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -170,7 +180,7 @@ def _rates(x, u, p_, out, /):
 
 
 def outputs(x, u, p_, /):
-    """Outputs y, one per port, conjugate to its input; shape (1, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (1, *batch)."""
     x = _states(x, p_)
     m = p_.m
     p = x[1]
@@ -248,7 +258,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (1, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (1, *batch)."""
     x = _states(x, p_)
     m = p_.m
     d = p_.d
@@ -268,7 +278,7 @@ def entropy_production(x, u, p_, /):
 
 
 def elements(x, u, p_, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (19, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (19, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     m = p_.m
@@ -316,7 +326,7 @@ def elements(x, u, p_, /):
 
 
 def jacobian(x, u, p_, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p_)
     m = p_.m
     k = p_.k
@@ -347,7 +357,7 @@ def jacobian(x, u, p_, /):
 
 
 def margins(x, u, p_, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p_)
     m = p_.m
     k = p_.k

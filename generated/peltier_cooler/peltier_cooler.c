@@ -3,13 +3,18 @@
  *
  * Source:  Ioffe (1957), Semiconductor Thermoelements; values of a module of 127 couples
  * Model:   peltier_cooler, spec sha256 e97f90f757f77de747011f7a983b38c3f53075a795fa19e001fa2cd5567cc5f1
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (phi, S_c, S_h)
  * u = (V_in, P, T_e)
+ * p = pointer to peltier_cooler_parameters
  */
 #include "peltier_cooler.h"
 
@@ -27,7 +32,7 @@ long peltier_cooler_states(const peltier_cooler_parameters *restrict p)
     return 3;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long peltier_cooler_processes(const peltier_cooler_parameters *restrict p)
 {
     (void)p;
@@ -46,7 +51,7 @@ void peltier_cooler_initial_state(const double *restrict u,
     out[2] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void peltier_cooler_rhs(const double *restrict x,
                         const double *restrict u,
                         const peltier_cooler_parameters *restrict p,
@@ -88,7 +93,7 @@ void peltier_cooler_rhs(const double *restrict x,
         + h*(T_e/T_sink - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void peltier_cooler_outputs(const double *restrict x,
                             const double *restrict u,
                             const peltier_cooler_parameters *restrict p,
@@ -208,7 +213,10 @@ void peltier_cooler_heat(const double *restrict x,
     out[2] = s_legs*T_plate;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void peltier_cooler_entropy_production(const double *restrict x,
                                        const double *restrict u,
                                        const peltier_cooler_parameters *restrict p,
@@ -238,7 +246,7 @@ void peltier_cooler_entropy_production(const double *restrict x,
     out[2] = s_legs*(T_plate - T_sink)/T_sink;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void peltier_cooler_elements(const double *restrict x,
                              const double *restrict u,
                              const peltier_cooler_parameters *restrict p,
@@ -324,7 +332,7 @@ void peltier_cooler_elements(const double *restrict x,
     out[35] = -h*(T_e - T_sink);
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void peltier_cooler_jacobian(const double *restrict x,
                              const double *restrict u,
                              const peltier_cooler_parameters *restrict p,
@@ -385,7 +393,7 @@ void peltier_cooler_jacobian(const double *restrict x,
         + (-(heat_warm + heat_legs)/power_2(T_sink) - h*T_e/power_2(T_sink))*dT_sink_dS_h;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void peltier_cooler_margins(const double *restrict x,
                             const double *restrict u,
                             const peltier_cooler_parameters *restrict p,

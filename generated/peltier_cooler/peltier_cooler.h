@@ -3,13 +3,18 @@
  *
  * Source:  Ioffe (1957), Semiconductor Thermoelements; values of a module of 127 couples
  * Model:   peltier_cooler, spec sha256 e97f90f757f77de747011f7a983b38c3f53075a795fa19e001fa2cd5567cc5f1
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (phi, S_c, S_h)
  * u = (V_in, P, T_e)
+ * p = pointer to peltier_cooler_parameters
  */
 #ifndef PIEZO_SYM_peltier_cooler_H
 #define PIEZO_SYM_peltier_cooler_H
@@ -42,12 +47,12 @@ typedef struct {
     .T_0 = 300.0, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     peltier_cooler_input_count = 3,
     peltier_cooler_output_count = 3,
     peltier_cooler_body_count = 2,
-    peltier_cooler_limit_count = 8,
+    peltier_cooler_condition_count = 8,
 };
 
 /*
@@ -56,7 +61,7 @@ enum {
 long peltier_cooler_states(const peltier_cooler_parameters *p);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long peltier_cooler_processes(const peltier_cooler_parameters *p);
 
@@ -70,7 +75,7 @@ void peltier_cooler_initial_state(const double *u,
                                   double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]
  * out[n], written; must not overlap another argument
@@ -81,7 +86,7 @@ void peltier_cooler_rhs(const double *x,
                         double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -92,7 +97,7 @@ void peltier_cooler_jacobian(const double *x,
                              double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]
  * out[peltier_cooler_output_count], written; must not overlap another argument: supply [A],
@@ -148,7 +153,8 @@ void peltier_cooler_heat(const double *x,
                          double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]
  * out[peltier_cooler_processes(p)], written; must not overlap another argument
@@ -159,7 +165,7 @@ void peltier_cooler_entropy_production(const double *x,
                                        double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]
  * out[36], written; must not overlap another argument: supply.effort [V], supply.flow [A],
@@ -177,18 +183,18 @@ void peltier_cooler_elements(const double *x,
                              double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]
- * out[peltier_cooler_limit_count], written; must not overlap another argument
- * out[0]: R >= 0; inside, >= 0
- * out[1]: lam >= 0; inside, >= 0
- * out[2]: h >= 0; inside, >= 0
- * out[3]: T_e > 0; inside, > 0
- * out[4]: L > 0; inside, > 0
- * out[5]: T_0 > 0; inside, > 0
- * out[6]: c_c > 0; inside, > 0
- * out[7]: c_h > 0; inside, > 0
+ * out[peltier_cooler_condition_count], written; must not overlap another argument
+ * out[0] >= 0 where R >= 0
+ * out[1] >= 0 where lam >= 0
+ * out[2] >= 0 where h >= 0
+ * out[3] > 0 where T_e > 0
+ * out[4] > 0 where L > 0
+ * out[5] > 0 where T_0 > 0
+ * out[6] > 0 where c_c > 0
+ * out[7] > 0 where c_h > 0
  */
 void peltier_cooler_margins(const double *x,
                             const double *u,

@@ -2,13 +2,18 @@
 
 Source:  Ioffe (1957), Semiconductor Thermoelements; values of a module of 127 couples
 Model:   peltier_cooler, spec sha256 e97f90f757f77de747011f7a983b38c3f53075a795fa19e001fa2cd5567cc5f1
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (phi, S_c, S_h)
 u = (V_in, P, T_e)
+p = Parameters()
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("phi", "Wb", "flux linkage of inductor 'leads'"),
     Record("S_c", "J/K", "entropy of thermal_mass 'plate'"),
@@ -47,16 +53,19 @@ INPUTS = (
     Record("T_e", "K", "temperature of the air"),
 )
 INPUT_DEFAULTS = (0.0, 0.0, 300.0)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("supply", "A", "current given by voltage_source 'supply'"),
     Record("load", "K", "temperature of thermal_mass 'plate'"),
     Record("air", "K", "temperature of thermal_mass 'sink'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("warm", "W/K", "resistor 'warm'"),
     Record("cool", "W/K", "resistor 'cool'"),
     Record("legs", "W/K", "conduction 'legs'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("plate", "K", "temperature of thermal_mass 'plate'"),
     Record("sink", "K", "temperature of thermal_mass 'sink'"),
@@ -99,6 +108,7 @@ ELEMENTS = (
     Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
     Record("air.power", "W", "power into ambient 'air'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("s", "V/K", "Seebeck coefficient of the module"),
     Record("R", "ohm", "resistance of the module"),
@@ -163,7 +173,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -213,7 +223,7 @@ def _rates(x, u, p, out, /):
 
 
 def outputs(x, u, p, /):
-    """Outputs y, one per port, conjugate to its input; shape (3, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (3, *batch)."""
     x = _states(x, p)
     L = p.L
     c_c = p.c_c
@@ -326,7 +336,7 @@ def heat(x, u, p, /):
 
 
 def entropy_production(x, u, p, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (3, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (3, *batch)."""
     x = _states(x, p)
     R = p.R
     lam = p.lam
@@ -354,7 +364,7 @@ def entropy_production(x, u, p, /):
 
 
 def elements(x, u, p, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (36, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (36, *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     s = p.s
@@ -431,7 +441,7 @@ def elements(x, u, p, /):
 
 
 def jacobian(x, u, p, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     s = p.s
@@ -489,7 +499,7 @@ def jacobian(x, u, p, /):
 
 
 def margins(x, u, p, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     R = p.R

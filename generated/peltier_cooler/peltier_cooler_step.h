@@ -3,13 +3,18 @@
  *
  * Source:  Ioffe (1957), Semiconductor Thermoelements; values of a module of 127 couples
  * Model:   peltier_cooler, spec sha256 e97f90f757f77de747011f7a983b38c3f53075a795fa19e001fa2cd5567cc5f1
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (phi, S_c, S_h)
  * u = (V_in, P, T_e)
+ * p = pointer to peltier_cooler_parameters
  */
 #ifndef PIEZO_SYM_peltier_cooler_STEP_H
 #define PIEZO_SYM_peltier_cooler_STEP_H
@@ -23,7 +28,7 @@ extern "C" {
 /*
  * Size of `space`, the working memory of a step, in numbers.
  */
-long peltier_cooler_step_size(const peltier_cooler_parameters *p_);
+long peltier_cooler_step_size(const peltier_cooler_parameters *p);
 
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
@@ -35,9 +40,9 @@ long peltier_cooler_step_size(const peltier_cooler_parameters *p_);
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]; constant during the step
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by supply, load, air; then heat [J], and then entropy
- *     produced [J/K], by warm, cool, legs; then the entropy [J/K] that each heat exchange
- *     brings
- * space[peltier_cooler_step_size(p_)], read and written: set it to zero before the first step,
+ *     produced [J/K], by warm, cool, legs; then entropy [J/K] that heat exchange brings to
+ *     plate, sink
+ * space[peltier_cooler_step_size(p)], read and written: set it to zero before the first step,
  *     then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared
  *
@@ -69,7 +74,7 @@ long peltier_cooler_step_size(const peltier_cooler_parameters *p_);
 int peltier_cooler_step(double *x,
                         const double *u,
                         double h,
-                        const peltier_cooler_parameters *p_,
+                        const peltier_cooler_parameters *p,
                         double *booked,
                         double *space);
 

@@ -3,13 +3,18 @@
  *
  * Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1
  * Model:   piezo_stack, spec sha256 9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
+ * p_ = pointer to piezo_stack_parameters, with an underscore beside the model's own p
  * bank hysteron: lanes j = 1 ... hysteron_count
  */
 #include "piezo_stack.h"
@@ -38,7 +43,7 @@ long piezo_stack_states(const piezo_stack_parameters *restrict p_)
     return 4 + hysteron_count;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long piezo_stack_processes(const piezo_stack_parameters *restrict p_)
 {
     const long hysteron_count = p_->hysteron_count;
@@ -66,7 +71,7 @@ void piezo_stack_initial_state(const double *restrict u,
     out[3 + hysteron_count] = c_0*log(T_e/T_0);
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void piezo_stack_rhs(const double *restrict x,
                      const double *restrict u,
                      const piezo_stack_parameters *restrict p_,
@@ -126,7 +131,7 @@ void piezo_stack_rhs(const double *restrict x,
     out[3 + hysteron_count] = (heat_hysteron + heat_damper)/T + lam*(T_e/T - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void piezo_stack_outputs(const double *restrict x,
                          const double *restrict u,
                          const piezo_stack_parameters *restrict p_,
@@ -283,7 +288,10 @@ void piezo_stack_heat(const double *restrict x,
     out[hysteron_count] = F_damper*v_mass;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void piezo_stack_entropy_production(const double *restrict x,
                                     const double *restrict u,
                                     const piezo_stack_parameters *restrict p_,
@@ -321,7 +329,7 @@ void piezo_stack_entropy_production(const double *restrict x,
     out[hysteron_count] = F_damper*v_mass/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void piezo_stack_elements(const double *restrict x,
                           const double *restrict u,
                           const piezo_stack_parameters *restrict p_,
@@ -426,7 +434,7 @@ void piezo_stack_elements(const double *restrict x,
     out[21 + end_out_hysteron_heat] = -sum_i_hysteron*V_in;
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void piezo_stack_jacobian(const double *restrict x,
                           const double *restrict u,
                           const piezo_stack_parameters *restrict p_,
@@ -506,7 +514,7 @@ void piezo_stack_jacobian(const double *restrict x,
         + (-(heat_hysteron + heat_damper)/power_2(T) - lam*T_e/power_2(T))*dT_minus_T_0_dS;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void piezo_stack_margins(const double *restrict x,
                          const double *restrict u,
                          const piezo_stack_parameters *restrict p_,

@@ -3,13 +3,18 @@
  *
  * Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1
  * Model:   piezo_stack, spec sha256 9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
+ * p_ = pointer to piezo_stack_parameters, with an underscore beside the model's own p
  * bank hysteron: lanes j = 1 ... hysteron_count
  */
 #ifndef PIEZO_SYM_piezo_stack_H
@@ -53,12 +58,12 @@ typedef struct {
     .hysteron_count = 2, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     piezo_stack_input_count = 3,
     piezo_stack_output_count = 3,
     piezo_stack_body_count = 1,
-    piezo_stack_limit_count = 12,
+    piezo_stack_condition_count = 12,
 };
 
 /*
@@ -67,7 +72,7 @@ enum {
 long piezo_stack_states(const piezo_stack_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long piezo_stack_processes(const piezo_stack_parameters *p_);
 
@@ -80,7 +85,7 @@ long piezo_stack_processes(const piezo_stack_parameters *p_);
 void piezo_stack_initial_state(const double *u, const piezo_stack_parameters *p_, double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[n], written; must not overlap another argument
@@ -91,7 +96,7 @@ void piezo_stack_rhs(const double *x,
                      double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -102,7 +107,7 @@ void piezo_stack_jacobian(const double *x,
                           double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[piezo_stack_output_count], written; must not overlap another argument: load [m/s],
@@ -155,7 +160,8 @@ void piezo_stack_heat(const double *x,
                       double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[piezo_stack_processes(p_)], written; must not overlap another argument
@@ -166,7 +172,7 @@ void piezo_stack_entropy_production(const double *x,
                                     double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[34 + 5*hysteron_count], written; must not overlap another argument: spring.effort [N],
@@ -189,22 +195,22 @@ void piezo_stack_elements(const double *x,
                           double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[piezo_stack_limit_count], written; must not overlap another argument
- * out[0]: T > T_0; inside, > 0
- * out[1]: T_e > T_0; inside, > 0
- * out[2]: d >= 0; inside, >= 0
- * out[3]: rho >= 0; inside, >= 0
- * out[4]: i_0 >= 0; inside, >= 0
- * out[5]: lam >= 0; inside, >= 0
- * out[6]: k > 0; inside, > 0
- * out[7]: M > 0; inside, > 0
- * out[8]: C > 0; inside, > 0
- * out[9]: L > 0; inside, > 0
- * out[10]: T_0 > 0; inside, > 0
- * out[11]: c_0 > 0; inside, > 0
+ * out[piezo_stack_condition_count], written; must not overlap another argument
+ * out[0] > 0 where T > T_0
+ * out[1] > 0 where T_e > T_0
+ * out[2] >= 0 where d >= 0
+ * out[3] >= 0 where rho >= 0
+ * out[4] >= 0 where i_0 >= 0
+ * out[5] >= 0 where lam >= 0
+ * out[6] > 0 where k > 0
+ * out[7] > 0 where M > 0
+ * out[8] > 0 where C > 0
+ * out[9] > 0 where L > 0
+ * out[10] > 0 where T_0 > 0
+ * out[11] > 0 where c_0 > 0
  */
 void piezo_stack_margins(const double *x,
                          const double *u,

@@ -2,13 +2,18 @@
 
 Source:  Caballeria, Ramirez, Le Gorrec (2021), eqs. (9)-(13), Table 1
 Model:   piezo_stack, spec sha256 9c0235a60e02072bc451611ffa723f273272c8e4536a3089081866f47c89389c
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, continuous, passive, odd, sigma, exergy, environment, invariant, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
 u = (F_ext, V_in, T_e)
+p_ = Parameters(), with an underscore beside the model's own p
 bank hysteron: lanes j = 1 ... Parameters.hysteron_count
 """
 
@@ -37,6 +42,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("q", "m", "extension of spring 'spring'"),
     Record("p", "kg*m/s", "momentum of mass 'mass'"),
@@ -50,15 +56,18 @@ INPUTS = (
     Record("T_e", "K", "temperature of the environment"),
 )
 INPUT_DEFAULTS = (0.0, 0.0, 298.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("load", "m/s", "velocity at force_source 'load'"),
     Record("supply", "A", "current given by voltage_source 'supply'"),
     Record("ambient", "K", "temperature of thermal_mass 'body'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("hysteron", "W/K", "hysteron 'hysteron'", "hysteron"),
     Record("damper", "W/K", "damper 'damper'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
@@ -103,6 +112,7 @@ ELEMENTS = (
     Record("supply.flow", "A", "current of voltage_source 'supply'"),
     Record("supply.power", "W", "power into voltage_source 'supply'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("M", "kg", "moving mass"),
     Record("k", "N/m", "stiffness"),
@@ -199,7 +209,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -262,7 +272,7 @@ def _rates(x, u, p_, out, /):
 
 
 def outputs(x, u, p_, /):
-    """Outputs y, one per port, conjugate to its input; shape (3, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (3, *batch)."""
     x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M
@@ -392,7 +402,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (1 + hysteron_count, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (1 + hysteron_count, *batch)."""
     x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M
@@ -421,7 +431,7 @@ def entropy_production(x, u, p_, /):
 
 
 def elements(x, u, p_, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (34 + 5*hysteron_count, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (34 + 5*hysteron_count, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     hysteron_count = p_.hysteron_count
@@ -518,7 +528,7 @@ def elements(x, u, p_, /):
 
 
 def jacobian(x, u, p_, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     hysteron_count = p_.hysteron_count
@@ -587,7 +597,7 @@ def jacobian(x, u, p_, /):
 
 
 def margins(x, u, p_, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     hysteron_count = p_.hysteron_count

@@ -3,13 +3,18 @@
  *
  * Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
  * Model:   stack_bouc_wen, spec sha256 cb2f5eb9e9a940796689ce0b466f2aabc3f9c62f14ebd031e4298cc6395703ff
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, Q, Q_h, S)
  * u = (F_ext, V_in, T_e)
+ * p_ = pointer to stack_bouc_wen_parameters, with an underscore beside the model's own p
  */
 #include "stack_bouc_wen.h"
 
@@ -37,7 +42,7 @@ long stack_bouc_wen_states(const stack_bouc_wen_parameters *restrict p_)
     return 5;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long stack_bouc_wen_processes(const stack_bouc_wen_parameters *restrict p_)
 {
     (void)p_;
@@ -58,7 +63,7 @@ void stack_bouc_wen_initial_state(const double *restrict u,
     out[4] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void stack_bouc_wen_rhs(const double *restrict x,
                         const double *restrict u,
                         const stack_bouc_wen_parameters *restrict p_,
@@ -113,7 +118,7 @@ void stack_bouc_wen_rhs(const double *restrict x,
     out[4] = (heat_damper + heat_hysteresis + heat_leads)/T + lam*(T_e/T - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void stack_bouc_wen_outputs(const double *restrict x,
                             const double *restrict u,
                             const stack_bouc_wen_parameters *restrict p_,
@@ -261,7 +266,10 @@ void stack_bouc_wen_heat(const double *restrict x,
     out[2] = i_leads*V_leads;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void stack_bouc_wen_entropy_production(const double *restrict x,
                                        const double *restrict u,
                                        const stack_bouc_wen_parameters *restrict p_,
@@ -301,7 +309,7 @@ void stack_bouc_wen_entropy_production(const double *restrict x,
     out[2] = i_leads*V_leads/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void stack_bouc_wen_elements(const double *restrict x,
                              const double *restrict u,
                              const stack_bouc_wen_parameters *restrict p_,
@@ -400,7 +408,7 @@ void stack_bouc_wen_elements(const double *restrict x,
     out[42] = -i_leads*V_in;
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void stack_bouc_wen_jacobian(const double *restrict x,
                              const double *restrict u,
                              const stack_bouc_wen_parameters *restrict p_,
@@ -478,7 +486,7 @@ void stack_bouc_wen_jacobian(const double *restrict x,
     out[4*n_ + 4] = (-(heat_damper + heat_hysteresis + heat_leads)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void stack_bouc_wen_margins(const double *restrict x,
                             const double *restrict u,
                             const stack_bouc_wen_parameters *restrict p_,

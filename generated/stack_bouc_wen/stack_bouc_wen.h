@@ -3,13 +3,18 @@
  *
  * Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
  * Model:   stack_bouc_wen, spec sha256 cb2f5eb9e9a940796689ce0b466f2aabc3f9c62f14ebd031e4298cc6395703ff
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, Q, Q_h, S)
  * u = (F_ext, V_in, T_e)
+ * p_ = pointer to stack_bouc_wen_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_stack_bouc_wen_H
 #define PIEZO_SYM_stack_bouc_wen_H
@@ -54,12 +59,12 @@ typedef struct {
     .T_0 = 293.15, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     stack_bouc_wen_input_count = 3,
     stack_bouc_wen_output_count = 3,
     stack_bouc_wen_body_count = 1,
-    stack_bouc_wen_limit_count = 13,
+    stack_bouc_wen_condition_count = 13,
 };
 
 /*
@@ -68,7 +73,7 @@ enum {
 long stack_bouc_wen_states(const stack_bouc_wen_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long stack_bouc_wen_processes(const stack_bouc_wen_parameters *p_);
 
@@ -83,7 +88,7 @@ void stack_bouc_wen_initial_state(const double *u,
                                   double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[n], written; must not overlap another argument
@@ -94,7 +99,7 @@ void stack_bouc_wen_rhs(const double *x,
                         double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -105,7 +110,7 @@ void stack_bouc_wen_jacobian(const double *x,
                              double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[stack_bouc_wen_output_count], written; must not overlap another argument: load [m/s],
@@ -160,7 +165,8 @@ void stack_bouc_wen_heat(const double *x,
                          double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[stack_bouc_wen_processes(p_)], written; must not overlap another argument
@@ -171,7 +177,7 @@ void stack_bouc_wen_entropy_production(const double *x,
                                        double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[43], written; must not overlap another argument: spring.effort [N], spring.flow [m/s],
@@ -192,23 +198,23 @@ void stack_bouc_wen_elements(const double *x,
                              double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[stack_bouc_wen_limit_count], written; must not overlap another argument
- * out[0]: beta >= abs(gam); inside, >= 0
- * out[1]: n > 0; inside, > 0
- * out[2]: V_h > 0; inside, > 0
- * out[3]: d >= 0; inside, >= 0
- * out[4]: R > 0; inside, > 0
- * out[5]: lam >= 0; inside, >= 0
- * out[6]: T_e > 0; inside, > 0
- * out[7]: k > 0; inside, > 0
- * out[8]: m > 0; inside, > 0
- * out[9]: C > 0; inside, > 0
- * out[10]: C_h > 0; inside, > 0
- * out[11]: T_0 > 0; inside, > 0
- * out[12]: c_0 > 0; inside, > 0
+ * out[stack_bouc_wen_condition_count], written; must not overlap another argument
+ * out[0] >= 0 where beta >= abs(gam)
+ * out[1] > 0 where n > 0
+ * out[2] > 0 where V_h > 0
+ * out[3] >= 0 where d >= 0
+ * out[4] > 0 where R > 0
+ * out[5] >= 0 where lam >= 0
+ * out[6] > 0 where T_e > 0
+ * out[7] > 0 where k > 0
+ * out[8] > 0 where m > 0
+ * out[9] > 0 where C > 0
+ * out[10] > 0 where C_h > 0
+ * out[11] > 0 where T_0 > 0
+ * out[12] > 0 where c_0 > 0
  */
 void stack_bouc_wen_margins(const double *x,
                             const double *u,

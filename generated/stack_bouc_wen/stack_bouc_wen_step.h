@@ -3,13 +3,18 @@
  *
  * Source:  Goldfarb, Celanovic (1997), IEEE Control Systems 17 (3), 69-79; Low, Guo (1995), J. Microelectromech. Syst. 4 (4), 230-237; PiezoDrive SA050536
  * Model:   stack_bouc_wen, spec sha256 cb2f5eb9e9a940796689ce0b466f2aabc3f9c62f14ebd031e4298cc6395703ff
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, continuous, rate-independent, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, Q, Q_h, S)
  * u = (F_ext, V_in, T_e)
+ * p_ = pointer to stack_bouc_wen_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_stack_bouc_wen_STEP_H
 #define PIEZO_SYM_stack_bouc_wen_STEP_H
@@ -35,8 +40,8 @@ long stack_bouc_wen_step_size(const stack_bouc_wen_parameters *p_);
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]; constant during the step
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by load, supply, ambient; then heat [J], and then
- *     entropy produced [J/K], by damper, hysteresis, leads; then the entropy [J/K] that each
- *     heat exchange brings
+ *     entropy produced [J/K], by damper, hysteresis, leads; then entropy [J/K] that heat
+ *     exchange brings to body
  * space[stack_bouc_wen_step_size(p_)], read and written: set it to zero before the first step,
  *     then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared

@@ -3,13 +3,18 @@
  *
  * Source:  Goldfarb, Celanovic (1997), Modeling piezoelectric stack actuators; loop measured by Chandra et al. (2023), doi 10.1063/5.0146134
  * Model:   stack_maxwell, spec sha256 a4fac994b19a17a907de6d8bbc2fec285a640ebfd27501f5fec69ade7095faff
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, rate-independent, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (Q, p, q, z_1 ... z_slips_count, S)
  * u = (F_ext, V_in, T_e)
+ * p_ = pointer to stack_maxwell_parameters, with an underscore beside the model's own p
  * bank slips: lanes j = 1 ... slips_count
  */
 #include "stack_maxwell.h"
@@ -38,7 +43,7 @@ long stack_maxwell_states(const stack_maxwell_parameters *restrict p_)
     return 4 + slips_count;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long stack_maxwell_processes(const stack_maxwell_parameters *restrict p_)
 {
     const long slips_count = p_->slips_count;
@@ -66,7 +71,7 @@ void stack_maxwell_initial_state(const double *restrict u,
     out[3 + slips_count] = c_0*log(T_e/T_0);
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void stack_maxwell_rhs(const double *restrict x,
                        const double *restrict u,
                        const stack_maxwell_parameters *restrict p_,
@@ -128,7 +133,7 @@ void stack_maxwell_rhs(const double *restrict x,
     out[3 + slips_count] = (heat_leads + heat_slips + heat_damper)/T + lam*(T_e/T - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void stack_maxwell_outputs(const double *restrict x,
                            const double *restrict u,
                            const stack_maxwell_parameters *restrict p_,
@@ -284,7 +289,10 @@ void stack_maxwell_heat(const double *restrict x,
     out[1 + slips_count] = F_damper*v_mass;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void stack_maxwell_entropy_production(const double *restrict x,
                                       const double *restrict u,
                                       const stack_maxwell_parameters *restrict p_,
@@ -328,7 +336,7 @@ void stack_maxwell_entropy_production(const double *restrict x,
     out[1 + slips_count] = F_damper*v_mass/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void stack_maxwell_elements(const double *restrict x,
                             const double *restrict u,
                             const stack_maxwell_parameters *restrict p_,
@@ -443,7 +451,7 @@ void stack_maxwell_elements(const double *restrict x,
     out[13 + end_out_slips_heat] = -lam*(T_e - T);
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void stack_maxwell_jacobian(const double *restrict x,
                             const double *restrict u,
                             const stack_maxwell_parameters *restrict p_,
@@ -524,7 +532,7 @@ void stack_maxwell_jacobian(const double *restrict x,
     out[(3 + slips_count)*n + 3 + slips_count] = (-(heat_leads + heat_slips + heat_damper)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void stack_maxwell_margins(const double *restrict x,
                            const double *restrict u,
                            const stack_maxwell_parameters *restrict p_,

@@ -3,13 +3,18 @@
  *
  * Source:  Goldfarb, Celanovic (1997), Modeling piezoelectric stack actuators; loop measured by Chandra et al. (2023), doi 10.1063/5.0146134
  * Model:   stack_maxwell, spec sha256 a4fac994b19a17a907de6d8bbc2fec285a640ebfd27501f5fec69ade7095faff
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, rate-independent, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (Q, p, q, z_1 ... z_slips_count, S)
  * u = (F_ext, V_in, T_e)
+ * p_ = pointer to stack_maxwell_parameters, with an underscore beside the model's own p
  * bank slips: lanes j = 1 ... slips_count
  */
 #ifndef PIEZO_SYM_stack_maxwell_H
@@ -51,12 +56,12 @@ typedef struct {
     .slips_count = 8, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     stack_maxwell_input_count = 3,
     stack_maxwell_output_count = 3,
     stack_maxwell_body_count = 1,
-    stack_maxwell_limit_count = 11,
+    stack_maxwell_condition_count = 11,
 };
 
 /*
@@ -65,7 +70,7 @@ enum {
 long stack_maxwell_states(const stack_maxwell_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long stack_maxwell_processes(const stack_maxwell_parameters *p_);
 
@@ -80,7 +85,7 @@ void stack_maxwell_initial_state(const double *u,
                                  double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[n], written; must not overlap another argument
@@ -91,7 +96,7 @@ void stack_maxwell_rhs(const double *x,
                        double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -102,7 +107,7 @@ void stack_maxwell_jacobian(const double *x,
                             double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[stack_maxwell_output_count], written; must not overlap another argument: load [m/s],
@@ -157,7 +162,8 @@ void stack_maxwell_heat(const double *x,
                         double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[stack_maxwell_processes(p_)], written; must not overlap another argument
@@ -168,7 +174,7 @@ void stack_maxwell_entropy_production(const double *x,
                                       double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[38 + 5*slips_count], written; must not overlap another argument: amplifier.effort [V],
@@ -190,21 +196,21 @@ void stack_maxwell_elements(const double *x,
                             double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[stack_maxwell_limit_count], written; must not overlap another argument
- * out[0]: T_e > 0; inside, > 0
- * out[1]: R > 0; inside, > 0
- * out[2]: d >= 0; inside, >= 0
- * out[3]: lam >= 0; inside, >= 0
- * out[4]: C > 0; inside, > 0
- * out[5]: m > 0; inside, > 0
- * out[6]: k > 0; inside, > 0
- * out[7]: k_s > 0; inside, > 0
- * out[8]: k_s*r >= 0; inside, >= 0
- * out[9]: T_0 > 0; inside, > 0
- * out[10]: c_0 > 0; inside, > 0
+ * out[stack_maxwell_condition_count], written; must not overlap another argument
+ * out[0] > 0 where T_e > 0
+ * out[1] > 0 where R > 0
+ * out[2] >= 0 where d >= 0
+ * out[3] >= 0 where lam >= 0
+ * out[4] > 0 where C > 0
+ * out[5] > 0 where m > 0
+ * out[6] > 0 where k > 0
+ * out[7] > 0 where k_s > 0
+ * out[8] >= 0 where k_s*r >= 0
+ * out[9] > 0 where T_0 > 0
+ * out[10] > 0 where c_0 > 0
  */
 void stack_maxwell_margins(const double *x,
                            const double *u,

@@ -2,13 +2,18 @@
 
 Source:  Goldfarb, Celanovic (1997), Modeling piezoelectric stack actuators; loop measured by Chandra et al. (2023), doi 10.1063/5.0146134
 Model:   stack_maxwell, spec sha256 a4fac994b19a17a907de6d8bbc2fec285a640ebfd27501f5fec69ade7095faff
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, rate-independent, sigma, exergy, environment, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (Q, p, q, z_1 ... z_slips_count, S)
 u = (F_ext, V_in, T_e)
+p_ = Parameters(), with an underscore beside the model's own p
 bank slips: lanes j = 1 ... Parameters.slips_count
 """
 
@@ -37,6 +42,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("Q", "C", "charge of capacitor 'clamped'"),
     Record("p", "kg*m/s", "momentum of mass 'mass'"),
@@ -50,16 +56,19 @@ INPUTS = (
     Record("T_e", "K", "temperature of the air"),
 )
 INPUT_DEFAULTS = (0.0, 0.0, 296.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("load", "m/s", "velocity at force_source 'load'"),
     Record("amplifier", "A", "current given by voltage_source 'amplifier'"),
     Record("air", "K", "temperature of thermal_mass 'body'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("leads", "W/K", "resistor 'leads'"),
     Record("slips", "W/K", "stop 'slips'", "slips"),
     Record("damper", "W/K", "damper 'damper'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
@@ -108,6 +117,7 @@ ELEMENTS = (
     Record("air.flow", "W/K", "entropy flow at ambient 'air'"),
     Record("air.power", "W", "power into ambient 'air'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("m", "kg", "moving mass"),
     Record("d", "N*s/m", "damping"),
@@ -201,7 +211,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -267,7 +277,7 @@ def _rates(x, u, p_, out, /):
 
 
 def outputs(x, u, p_, /):
-    """Outputs y, one per port, conjugate to its input; shape (3, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (3, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     slips_count = p_.slips_count
@@ -406,7 +416,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (2 + slips_count, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (2 + slips_count, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     slips_count = p_.slips_count
@@ -443,7 +453,7 @@ def entropy_production(x, u, p_, /):
 
 
 def elements(x, u, p_, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (38 + 5*slips_count, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (38 + 5*slips_count, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     slips_count = p_.slips_count
@@ -547,7 +557,7 @@ def elements(x, u, p_, /):
 
 
 def jacobian(x, u, p_, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     slips_count = p_.slips_count
@@ -616,7 +626,7 @@ def jacobian(x, u, p_, /):
 
 
 def margins(x, u, p_, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     slips_count = p_.slips_count

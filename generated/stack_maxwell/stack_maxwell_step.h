@@ -3,13 +3,18 @@
  *
  * Source:  Goldfarb, Celanovic (1997), Modeling piezoelectric stack actuators; loop measured by Chandra et al. (2023), doi 10.1063/5.0146134
  * Model:   stack_maxwell, spec sha256 a4fac994b19a17a907de6d8bbc2fec285a640ebfd27501f5fec69ade7095faff
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, rate-independent, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (Q, p, q, z_1 ... z_slips_count, S)
  * u = (F_ext, V_in, T_e)
+ * p_ = pointer to stack_maxwell_parameters, with an underscore beside the model's own p
  * bank slips: lanes j = 1 ... slips_count
  */
 #ifndef PIEZO_SYM_stack_maxwell_STEP_H
@@ -36,8 +41,8 @@ long stack_maxwell_step_size(const stack_maxwell_parameters *p_);
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]; constant during the step
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by load, amplifier, air; then heat [J], and then
- *     entropy produced [J/K], by leads, slips_1 ... slips_slips_count, damper; then the
- *     entropy [J/K] that each heat exchange brings
+ *     entropy produced [J/K], by leads, slips_1 ... slips_slips_count, damper; then entropy
+ *     [J/K] that heat exchange brings to body
  * space[stack_maxwell_step_size(p_)], read and written: set it to zero before the first step,
  *     then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared

@@ -3,13 +3,18 @@
  *
  * Source:  Becker, Green, Pearson (1946), Bell Syst. Tech. J. 26, 170-212, R = R_0 exp(B (1/T - 1/T_0))
  * Model:   thermistor, spec sha256 b3ce3439410245bed29fbaef5d338f6c046728146ec30a1b29ddd4240ea71ae0
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (phi, Q, S)
  * u = ()
+ * p = pointer to thermistor_parameters
  */
 #include "thermistor.h"
 
@@ -27,7 +32,7 @@ long thermistor_states(const thermistor_parameters *restrict p)
     return 3;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long thermistor_processes(const thermistor_parameters *restrict p)
 {
     (void)p;
@@ -46,7 +51,7 @@ void thermistor_initial_state(const double *restrict u,
     out[2] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void thermistor_rhs(const double *restrict x,
                     const double *restrict u,
                     const thermistor_parameters *restrict p,
@@ -76,7 +81,7 @@ void thermistor_rhs(const double *restrict x,
     out[2] = heat_bead/T;
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void thermistor_outputs(const double *restrict x,
                         const double *restrict u,
                         const thermistor_parameters *restrict p,
@@ -158,7 +163,10 @@ void thermistor_heat(const double *restrict x,
     out[0] = V_bead*i_coil;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void thermistor_entropy_production(const double *restrict x,
                                    const double *restrict u,
                                    const thermistor_parameters *restrict p,
@@ -181,7 +189,7 @@ void thermistor_entropy_production(const double *restrict x,
     out[0] = V_bead*i_coil/T;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void thermistor_elements(const double *restrict x,
                          const double *restrict u,
                          const thermistor_parameters *restrict p,
@@ -228,7 +236,7 @@ void thermistor_elements(const double *restrict x,
     out[15] = T_0*c*exp(S/c);
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void thermistor_jacobian(const double *restrict x,
                          const double *restrict u,
                          const thermistor_parameters *restrict p,
@@ -269,7 +277,7 @@ void thermistor_jacobian(const double *restrict x,
     out[2*n + 2] = dheat_bead_dS/T - heat_bead/power_2(T)*dT_dS;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void thermistor_margins(const double *restrict x,
                         const double *restrict u,
                         const thermistor_parameters *restrict p,

@@ -3,13 +3,18 @@
  *
  * Source:  Becker, Green, Pearson (1946), Bell Syst. Tech. J. 26, 170-212, R = R_0 exp(B (1/T - 1/T_0))
  * Model:   thermistor, spec sha256 b3ce3439410245bed29fbaef5d338f6c046728146ec30a1b29ddd4240ea71ae0
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (phi, Q, S)
  * u = ()
+ * p = pointer to thermistor_parameters
  */
 #ifndef PIEZO_SYM_thermistor_H
 #define PIEZO_SYM_thermistor_H
@@ -38,12 +43,12 @@ typedef struct {
     .T_0 = 300.0, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     thermistor_input_count = 0,
     thermistor_output_count = 0,
     thermistor_body_count = 1,
-    thermistor_limit_count = 5,
+    thermistor_condition_count = 5,
 };
 
 /*
@@ -52,7 +57,7 @@ enum {
 long thermistor_states(const thermistor_parameters *p);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long thermistor_processes(const thermistor_parameters *p);
 
@@ -64,7 +69,7 @@ long thermistor_processes(const thermistor_parameters *p);
 void thermistor_initial_state(const double *u, const thermistor_parameters *p, double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: phi [Wb], Q [C], S [J/K]
  * u[thermistor_input_count], read
  * out[n], written; must not overlap another argument
@@ -75,7 +80,7 @@ void thermistor_rhs(const double *x,
                     double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: phi [Wb], Q [C], S [J/K]
  * u[thermistor_input_count], read
  * out[n*n], written; must not overlap another argument
@@ -86,7 +91,7 @@ void thermistor_jacobian(const double *x,
                          double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: phi [Wb], Q [C], S [J/K]
  * u[thermistor_input_count], read
  * out[thermistor_output_count], written; must not overlap another argument
@@ -138,7 +143,8 @@ void thermistor_heat(const double *x,
                      double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: phi [Wb], Q [C], S [J/K]
  * u[thermistor_input_count], read
  * out[thermistor_processes(p)], written; must not overlap another argument
@@ -149,7 +155,7 @@ void thermistor_entropy_production(const double *x,
                                    double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: phi [Wb], Q [C], S [J/K]
  * u[thermistor_input_count], read
  * out[16], written; must not overlap another argument: coil.effort [V], coil.flow [A],
@@ -163,15 +169,15 @@ void thermistor_elements(const double *x,
                          double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: phi [Wb], Q [C], S [J/K]
  * u[thermistor_input_count], read
- * out[thermistor_limit_count], written; must not overlap another argument
- * out[0]: R_0 >= 0; inside, >= 0
- * out[1]: L > 0; inside, > 0
- * out[2]: C > 0; inside, > 0
- * out[3]: T_0 > 0; inside, > 0
- * out[4]: c > 0; inside, > 0
+ * out[thermistor_condition_count], written; must not overlap another argument
+ * out[0] >= 0 where R_0 >= 0
+ * out[1] > 0 where L > 0
+ * out[2] > 0 where C > 0
+ * out[3] > 0 where T_0 > 0
+ * out[4] > 0 where c > 0
  */
 void thermistor_margins(const double *x,
                         const double *u,

@@ -2,13 +2,18 @@
 
 Source:  Becker, Green, Pearson (1946), Bell Syst. Tech. J. 26, 170-212, R = R_0 exp(B (1/T - 1/T_0))
 Model:   thermistor, spec sha256 b3ce3439410245bed29fbaef5d338f6c046728146ec30a1b29ddd4240ea71ae0
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (phi, Q, S)
 u = ()
+p = Parameters()
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("phi", "Wb", "flux linkage of inductor 'coil'"),
     Record("Q", "C", "charge of capacitor 'cap'"),
@@ -43,10 +49,13 @@ STATES = (
 )
 INPUTS = ()
 INPUT_DEFAULTS = ()
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = ()
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("bead", "W/K", "resistor 'bead'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("body", "K", "temperature of thermal_mass 'body'"),
 )
@@ -68,6 +77,7 @@ ELEMENTS = (
     Record("body.power", "W", "power into thermal_mass 'body'"),
     Record("body.energy", "J", "energy of thermal_mass 'body'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("L", "H", "inductance"),
     Record("C", "F", "capacitance"),
@@ -126,7 +136,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -165,7 +175,7 @@ def _rates(x, u, p, out, /):
 
 
 def outputs(x, u, p, /):
-    """Outputs y, one per port, conjugate to its input; shape (0, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (0, *batch)."""
     x = _states(x, p)
     out = np.empty((0, *x.shape[1:]))
     return out
@@ -234,7 +244,7 @@ def heat(x, u, p, /):
 
 
 def entropy_production(x, u, p, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (1, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (1, *batch)."""
     x = _states(x, p)
     L = p.L
     R_0 = p.R_0
@@ -255,7 +265,7 @@ def entropy_production(x, u, p, /):
 
 
 def elements(x, u, p, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (16, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (16, *batch)."""
     x = _states(x, p)
     L = p.L
     C = p.C
@@ -300,7 +310,7 @@ def elements(x, u, p, /):
 
 
 def jacobian(x, u, p, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p)
     L = p.L
     C = p.C
@@ -335,7 +345,7 @@ def jacobian(x, u, p, /):
 
 
 def margins(x, u, p, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p)
     L = p.L
     C = p.C

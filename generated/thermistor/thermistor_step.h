@@ -3,13 +3,18 @@
  *
  * Source:  Becker, Green, Pearson (1946), Bell Syst. Tech. J. 26, 170-212, R = R_0 exp(B (1/T - 1/T_0))
  * Model:   thermistor, spec sha256 b3ce3439410245bed29fbaef5d338f6c046728146ec30a1b29ddd4240ea71ae0
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (phi, Q, S)
  * u = ()
+ * p = pointer to thermistor_parameters
  */
 #ifndef PIEZO_SYM_thermistor_STEP_H
 #define PIEZO_SYM_thermistor_STEP_H
@@ -23,7 +28,7 @@ extern "C" {
 /*
  * Size of `space`, the working memory of a step, in numbers.
  */
-long thermistor_step_size(const thermistor_parameters *p_);
+long thermistor_step_size(const thermistor_parameters *p);
 
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
@@ -36,9 +41,9 @@ long thermistor_step_size(const thermistor_parameters *p_);
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by no port; then heat [J], and then entropy produced
  *     [J/K], by bead
- * space[thermistor_step_size(p_)], read and written: set it to zero before the first step,
- *     then leave it as it is; it keeps the largest magnitude of each state, with which
- *     rounding errors are compared
+ * space[thermistor_step_size(p)], read and written: set it to zero before the first step, then
+ *     leave it as it is; it keeps the largest magnitude of each state, with which rounding
+ *     errors are compared
  *
  * Example: cc -O3 -fopenmp-simd example.c thermistor.c thermistor_step.c -lm
  *
@@ -68,7 +73,7 @@ long thermistor_step_size(const thermistor_parameters *p_);
 int thermistor_step(double *x,
                     const double *u,
                     double h,
-                    const thermistor_parameters *p_,
+                    const thermistor_parameters *p,
                     double *booked,
                     double *space);
 

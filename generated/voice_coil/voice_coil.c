@@ -3,13 +3,18 @@
  *
  * Source:  Small (1972), J. Audio Eng. Soc. 20 (5), 383-395; values of a 165 mm driver
  * Model:   voice_coil, spec sha256 b17a1309ca30712ebd0993cb3dcdd961cc3539b78aa3f80bce5bbdfa54c8bfcf
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, phi, S_w, S_m)
  * u = (V_in, T_e)
+ * p_ = pointer to voice_coil_parameters, with an underscore beside the model's own p
  */
 #include "voice_coil.h"
 
@@ -27,7 +32,7 @@ long voice_coil_states(const voice_coil_parameters *restrict p_)
     return 5;
 }
 
-/* Number of processes; of a bank, one per lane. */
+/* Number of processes, which produce entropy; of a bank, one per lane. */
 long voice_coil_processes(const voice_coil_parameters *restrict p_)
 {
     (void)p_;
@@ -48,7 +53,7 @@ void voice_coil_initial_state(const double *restrict u,
     out[4] = 0.0;
 }
 
-/* Rates dx/dt = J_ir dU/dx + g u. */
+/* Rates dx/dt, the rows of J_ir dU/dx + g u. */
 void voice_coil_rhs(const double *restrict x,
                     const double *restrict u,
                     const voice_coil_parameters *restrict p_,
@@ -98,7 +103,7 @@ void voice_coil_rhs(const double *restrict x,
     out[4] = (heat_losses + heat_contact)/T_magnet + h*(T_e/T_magnet - 1.0);
 }
 
-/* Outputs y, one per port, conjugate to its input. */
+/* Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient. */
 void voice_coil_outputs(const double *restrict x,
                         const double *restrict u,
                         const voice_coil_parameters *restrict p_,
@@ -225,7 +230,10 @@ void voice_coil_heat(const double *restrict x,
     out[2] = s_contact*T_winding;
 }
 
-/* Entropy that each process produces [W/K]; of a bank, one row per lane. */
+/*
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * bank, one row per lane.
+ */
 void voice_coil_entropy_production(const double *restrict x,
                                    const double *restrict u,
                                    const voice_coil_parameters *restrict p_,
@@ -261,7 +269,7 @@ void voice_coil_entropy_production(const double *restrict x,
     out[2] = s_contact*(T_winding - T_magnet)/T_magnet;
 }
 
-/* Effort, flow, power, energy, heat of each element; of a bank, one row per lane. */
+/* Effort, flow, power, energy and heat of elements; of a bank, one row per lane. */
 void voice_coil_elements(const double *restrict x,
                          const double *restrict u,
                          const voice_coil_parameters *restrict p_,
@@ -352,7 +360,7 @@ void voice_coil_elements(const double *restrict x,
     out[40] = -i_coil*V_in;
 }
 
-/* Derivative of rhs by the state, n x n, row after row. */
+/* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */
 void voice_coil_jacobian(const double *restrict x,
                          const double *restrict u,
                          const voice_coil_parameters *restrict p_,
@@ -428,7 +436,7 @@ void voice_coil_jacobian(const double *restrict x,
         + (-(heat_losses + heat_contact)/power_2(T_magnet) - h*T_e/power_2(T_magnet))*dT_magnet_dS_m;
 }
 
-/* Margin of each condition of the domain; of a bank, the least over its lanes. */
+/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
 void voice_coil_margins(const double *restrict x,
                         const double *restrict u,
                         const voice_coil_parameters *restrict p_,

@@ -3,13 +3,18 @@
  *
  * Source:  Small (1972), J. Audio Eng. Soc. 20 (5), 383-395; values of a 165 mm driver
  * Model:   voice_coil, spec sha256 b17a1309ca30712ebd0993cb3dcdd961cc3539b78aa3f80bce5bbdfa54c8bfcf
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, phi, S_w, S_m)
  * u = (V_in, T_e)
+ * p_ = pointer to voice_coil_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_voice_coil_H
 #define PIEZO_SYM_voice_coil_H
@@ -50,12 +55,12 @@ typedef struct {
     .T_0 = 293.15, \
 }
 
-/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */
+/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */
 enum {
     voice_coil_input_count = 2,
     voice_coil_output_count = 2,
     voice_coil_body_count = 2,
-    voice_coil_limit_count = 13,
+    voice_coil_condition_count = 13,
 };
 
 /*
@@ -64,7 +69,7 @@ enum {
 long voice_coil_states(const voice_coil_parameters *p_);
 
 /*
- * Number of processes; of a bank, one per lane.
+ * Number of processes, which produce entropy; of a bank, one per lane.
  */
 long voice_coil_processes(const voice_coil_parameters *p_);
 
@@ -77,7 +82,7 @@ long voice_coil_processes(const voice_coil_parameters *p_);
 void voice_coil_initial_state(const double *u, const voice_coil_parameters *p_, double *out);
 
 /*
- * Rates dx/dt = J_ir dU/dx + g u.
+ * Rates dx/dt, the rows of J_ir dU/dx + g u.
  * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]
  * out[n], written; must not overlap another argument
@@ -88,7 +93,7 @@ void voice_coil_rhs(const double *x,
                     double *out);
 
 /*
- * Derivative of rhs by the state, n x n, row after row.
+ * Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j].
  * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]
  * out[n*n], written; must not overlap another argument
@@ -99,7 +104,7 @@ void voice_coil_jacobian(const double *x,
                          double *out);
 
 /*
- * Outputs y, one per port, conjugate to its input.
+ * Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient.
  * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]
  * out[voice_coil_output_count], written; must not overlap another argument: amplifier [A], air
@@ -153,7 +158,8 @@ void voice_coil_heat(const double *x,
                      double *out);
 
 /*
- * Entropy that each process produces [W/K]; of a bank, one row per lane.
+ * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ *     bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]
  * out[voice_coil_processes(p_)], written; must not overlap another argument
@@ -164,7 +170,7 @@ void voice_coil_entropy_production(const double *x,
                                    double *out);
 
 /*
- * Effort, flow, power, energy, heat of each element; of a bank, one row per lane.
+ * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]
  * out[41], written; must not overlap another argument: suspension.effort [N], suspension.flow
@@ -184,23 +190,23 @@ void voice_coil_elements(const double *x,
                          double *out);
 
 /*
- * Margin of each condition of the domain; of a bank, the least over its lanes.
+ * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
  * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]
- * out[voice_coil_limit_count], written; must not overlap another argument
- * out[0]: d >= 0; inside, >= 0
- * out[1]: R_0 >= 0; inside, >= 0
- * out[2]: al >= 0; inside, >= 0
- * out[3]: lam >= 0; inside, >= 0
- * out[4]: h >= 0; inside, >= 0
- * out[5]: 1 + al*(T_winding - T_0) > 0; inside, > 0
- * out[6]: T_e > 0; inside, > 0
- * out[7]: k > 0; inside, > 0
- * out[8]: m > 0; inside, > 0
- * out[9]: L > 0; inside, > 0
- * out[10]: T_0 > 0; inside, > 0
- * out[11]: c_w > 0; inside, > 0
- * out[12]: c_m > 0; inside, > 0
+ * out[voice_coil_condition_count], written; must not overlap another argument
+ * out[0] >= 0 where d >= 0
+ * out[1] >= 0 where R_0 >= 0
+ * out[2] >= 0 where al >= 0
+ * out[3] >= 0 where lam >= 0
+ * out[4] >= 0 where h >= 0
+ * out[5] > 0 where 1 + al*(T_winding - T_0) > 0
+ * out[6] > 0 where T_e > 0
+ * out[7] > 0 where k > 0
+ * out[8] > 0 where m > 0
+ * out[9] > 0 where L > 0
+ * out[10] > 0 where T_0 > 0
+ * out[11] > 0 where c_w > 0
+ * out[12] > 0 where c_m > 0
  */
 void voice_coil_margins(const double *x,
                         const double *u,

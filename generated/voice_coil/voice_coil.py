@@ -2,13 +2,18 @@
 
 Source:  Small (1972), J. Audio Eng. Soc. 20 (5), 383-395; values of a 165 mm driver
 Model:   voice_coil, spec sha256 b17a1309ca30712ebd0993cb3dcdd961cc3539b78aa3f80bce5bbdfa54c8bfcf
+System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+         rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+         parameters in the domain, and for banks of any size)
 
 Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 Arrays have shape (n, *batch); values are in SI units.
 
 x = (q, p, phi, S_w, S_m)
 u = (V_in, T_e)
+p_ = Parameters(), with an underscore beside the model's own p
 """
 
 from dataclasses import dataclass
@@ -36,6 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
+# rows of x, and of u with their values where nothing else is said
 STATES = (
     Record("q", "m", "extension of spring 'suspension'"),
     Record("p", "kg*m/s", "momentum of mass 'cone'"),
@@ -48,15 +54,18 @@ INPUTS = (
     Record("T_e", "K", "temperature of the air"),
 )
 INPUT_DEFAULTS = (0.0, 293.15)
+# rows of outputs() and supply(): ports, named after the elements that have the inputs
 OUTPUTS = (
     Record("amplifier", "A", "current given by voltage_source 'amplifier'"),
     Record("air", "K", "temperature of thermal_mass 'magnet'"),
 )
+# rows of heat() and entropy_production(): processes, with the unit of the second
 PROCESSES = (
     Record("losses", "W/K", "damper 'losses'"),
     Record("copper", "W/K", "resistor 'copper'"),
     Record("contact", "W/K", "conduction 'contact'"),
 )
+# rows of temperatures(), and of elements()
 BODIES = (
     Record("winding", "K", "temperature of thermal_mass 'winding'"),
     Record("magnet", "K", "temperature of thermal_mass 'magnet'"),
@@ -104,6 +113,7 @@ ELEMENTS = (
     Record("amplifier.flow", "A", "current of voltage_source 'amplifier'"),
     Record("amplifier.power", "W", "power into voltage_source 'amplifier'"),
 )
+# fields of Parameters; elements of many lanes; conditions under which the proofs hold
 PARAMETERS = (
     Record("m", "kg", "moving mass"),
     Record("k", "N/m", "stiffness of the suspension"),
@@ -181,7 +191,7 @@ _BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -241,7 +251,7 @@ def _rates(x, u, p_, out, /):
 
 
 def outputs(x, u, p_, /):
-    """Outputs y, one per port, conjugate to its input; shape (2, *batch)."""
+    """Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient; shape (2, *batch)."""
     x = _states(x, p_)
     L = p_.L
     c_m = p_.c_m
@@ -359,7 +369,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy that each process produces [W/K]; of a bank, one row per lane; shape (3, *batch)."""
+    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (3, *batch)."""
     x = _states(x, p_)
     m = p_.m
     d = p_.d
@@ -393,7 +403,7 @@ def entropy_production(x, u, p_, /):
 
 
 def elements(x, u, p_, /):
-    """Effort, flow, power, energy, heat of each element; of a bank, one row per lane; shape (41, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (41, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     m = p_.m
@@ -484,7 +494,7 @@ def elements(x, u, p_, /):
 
 
 def jacobian(x, u, p_, /):
-    """Derivative of rhs by the state; shape (n, n, *batch)."""
+    """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     m = p_.m
@@ -559,7 +569,7 @@ def jacobian(x, u, p_, /):
 
 
 def margins(x, u, p_, /):
-    """Margin of each condition of DOMAIN; of a bank, the least over its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     m = p_.m

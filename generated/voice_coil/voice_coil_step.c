@@ -3,13 +3,18 @@
  *
  * Source:  Small (1972), J. Audio Eng. Soc. 20 (5), 383-395; values of a 165 mm driver
  * Model:   voice_coil, spec sha256 b17a1309ca30712ebd0993cb3dcdd961cc3539b78aa3f80bce5bbdfa54c8bfcf
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, phi, S_w, S_m)
  * u = (V_in, T_e)
+ * p_ = pointer to voice_coil_parameters, with an underscore beside the model's own p
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the

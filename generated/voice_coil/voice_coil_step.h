@@ -3,13 +3,18 @@
  *
  * Source:  Small (1972), J. Audio Eng. Soc. 20 (5), 383-395; values of a 165 mm driver
  * Model:   voice_coil, spec sha256 b17a1309ca30712ebd0993cb3dcdd961cc3539b78aa3f80bce5bbdfa54c8bfcf
+ * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
+ *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, odd, sigma, exergy, environment, units, program PROVED
+ *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
+ *          parameters in the domain, and for banks of any size)
  *
  * Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
  * C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno.
  *
  * x = (q, p, phi, S_w, S_m)
  * u = (V_in, T_e)
+ * p_ = pointer to voice_coil_parameters, with an underscore beside the model's own p
  */
 #ifndef PIEZO_SYM_voice_coil_STEP_H
 #define PIEZO_SYM_voice_coil_STEP_H
@@ -35,8 +40,8 @@ long voice_coil_step_size(const voice_coil_parameters *p_);
  * u[voice_coil_input_count], read: V_in [V], T_e [K]; constant during the step
  * h, read: the length of the step [s]
  * booked, written: energy supplied [J] by amplifier, air; then heat [J], and then entropy
- *     produced [J/K], by losses, copper, contact; then the entropy [J/K] that each heat
- *     exchange brings
+ *     produced [J/K], by losses, copper, contact; then entropy [J/K] that heat exchange brings
+ *     to magnet
  * space[voice_coil_step_size(p_)], read and written: set it to zero before the first step,
  *     then leave it as it is; it keeps the largest magnitude of each state, with which
  *     rounding errors are compared

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from textwrap import wrap
 from typing import Annotated, Any
 
@@ -11,6 +12,9 @@ import typer
 from piezo_sym.cli.output import console, row, table
 
 WIDTH = 100
+#: Where the numbers of equations and assumptions are from.
+PAPER = "Numbered equations and assumptions: Caballeria, Ramirez, Le Gorrec (2021)."
+NUMBERED = re.compile(r"\beqs?\. \(|Assumption")
 OPERATORS = (
     ("+ - * /", "as usual", "R*(1 + al*(T - T_0))"),
     ("**", "a power, by a whole number or a small fraction", "d*v**3"),
@@ -33,7 +37,8 @@ def kinds(
     if kind is not None:
         _show(kind, known[KINDS[kind].__name__])
         return
-    made = table("Kinds of elements; more on one: piezo-sym kinds KIND", "kind", "what it is")
+    title = f"Kinds of elements; more on one: piezo-sym kinds KIND. {PAPER}"
+    made = table(title, "kind", "what it is")
     for name, element in KINDS.items():
         row(made, name, known[element.__name__]["description"].partition("\n")[0])
     console().print(made)
@@ -61,6 +66,8 @@ def _show(kind: str, known: dict[str, Any]) -> None:
         default = f"default: {field['default']!r}" if field.get("default") is not None else ""
         row(made, name, needed or default, field.get("description", ""))
     console().print(made)
+    if NUMBERED.search(about[0]):
+        typer.echo(f"{PAPER}\n")
     typer.echo(f"[elements]\n{example.removeprefix('Example: ')}")
 
 

@@ -29,14 +29,17 @@ STATE_INPUT, STATE = ("x", "u", "p"), ("x", "p")
 #: What each function returns, and its arguments.
 FUNCTIONS = {
     "initial_state": ("State at t = 0 [SI], for the inputs u at t = 0", ("u", "p")),
-    "rhs": ("Rates dx/dt = J_ir dU/dx + g u", STATE_INPUT),
-    "outputs": ("Outputs y, one per port, conjugate to its input", STATE_INPUT),
+    "rhs": ("Rates dx/dt, the rows of J_ir dU/dx + g u", STATE_INPUT),
+    "outputs": (
+        "Outputs y, one per port, conjugate to its input, or to the entropy flow of an ambient",
+        STATE_INPUT,
+    ),
     "supply": ("Power supplied through each port [W]; the sum is dU/dt", STATE_INPUT),
     "energy": ("Hamiltonian U [J]", STATE),
     "entropy": ("Total entropy S [J/K]", STATE),
     "temperatures": ("Temperature of each body [K]", STATE),
     "elements": (
-        "Effort, flow, power, energy, heat of each element; of a bank, one row per lane",
+        "Effort, flow, power, energy and heat of elements; of a bank, one row per lane",
         STATE_INPUT,
     ),
     "heat": (
@@ -44,7 +47,8 @@ FUNCTIONS = {
         STATE_INPUT,
     ),
     "entropy_production": (
-        "Entropy that each process produces [W/K]; of a bank, one row per lane",
+        "Entropy that each process produces [W/K], heat exchange with the surroundings aside; of "
+        "a bank, one row per lane",
         STATE_INPUT,
     ),
 }

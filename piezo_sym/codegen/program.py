@@ -185,23 +185,46 @@ def blank(program: Program) -> Program:
     return replace(program, defaults=values, sha256=place(HASH), verdict=place(VERDICT))
 
 
+#: What the first lines of a file mean, for who reads no other.
+SYSTEM = (
+    "System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its",
+    "         rows, multiplied out; `piezo-sym show` prints the matrices",
+)
+PROOFS = (
+    "         (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and",
+    "         parameters in the domain, and for banks of any size)",
+)
+
+
 def described(
-    program: Program, plain: Callable[[str], str], notes: Iterable[str], counts: str = ""
+    program: Program,
+    plain: Callable[[str], str],
+    notes: Iterable[str],
+    parameters: tuple[str, str],
+    counts: str = "",
 ) -> list[str]:
-    """Return the lines that say at the head of a file what it is; `plain` makes a text safe."""
+    """Return the lines that say at the head of a file what it is.
+
+    `plain` makes a text safe; `parameters` is what its functions call them, and their type.
+    """
+    p, kind = parameters
+    apart = "" if p == "p" else ", with an underscore beside the model's own p"
     u = ", ".join(field.name for field in program.inputs)
     return [
         f"{plain(program.title or program.name)}: irreversible port-Hamiltonian system.",
         "",
         *([f"Source:  {plain(program.source)}"] if program.source else []),
         f"Model:   {program.name}, spec sha256 {program.sha256}",
+        *SYSTEM,
         f"Proofs:  {program.verdict}",
+        *PROOFS,
         "",
         f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
         *notes,
         "",
         f"x = ({', '.join(field.spread for field in program.states)})",
         f"u = ({u})",
+        f"{p} = {kind}{apart}",
         *(f"bank {bank}: lanes j = 1 ... {counts}{bank}_count" for bank in program.counts),
     ]
 

@@ -82,7 +82,7 @@ def samples(times: ArrayLike, values: ArrayLike) -> Samples:
     Parameters
     ----------
     times : increasing [s], shape (n,), n >= 2; one that stands twice is a jump.
-    values : in the input's unit, shape (n,).
+    values : in the SI unit of the input, shape (n,).
 
     Raises
     ------

@@ -24,7 +24,7 @@ STEPS_PER_PERIOD = 8
 
 
 class Signal(ABC):
-    """An input as a function of time, continuous from the right; called, it gives its values.
+    """An input as a function of time, continuous from the right: signal(t) gives its values.
 
     A solver restarts at `breaks`, where the signal or its slope jumps, and takes no step longer
     than `max_step`, so that it misses no period and no pulse. A new kind of signal is a class
@@ -60,7 +60,7 @@ class Signal(ABC):
         return inf
 
     def breaks(self, duration: float) -> tuple[float, ...]:
-        """Return the times in (0, duration) [s] where the signal or its slope jumps.
+        """Return where in (0, duration) [s] the signal or its slope jumps, and steps end.
 
         Corners without a jump are left out when there are more than 1000 of them; `max_step`
         resolves the signal then.
@@ -68,11 +68,11 @@ class Signal(ABC):
         return tuple(float(t) for t in self._corners(duration) if 0 < t < duration)
 
     def max_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return the longest step [s] that resolves the signal between its breaks."""
+        """Return the longest step [s] between breaks, of methods that sample it once per step."""
         return self._period / STEPS_PER_PERIOD
 
     def longest_step(self, duration: float) -> float:
-        """Return the same for steps that evaluate the signal at several stages each."""
+        """Return the longest step [s] between breaks, of methods with several stages per step."""
         return 0.5 * self._period if self._smooth else self.max_step(duration)
 
 
@@ -94,7 +94,7 @@ class Sine(Signal):
 
     Parameters
     ----------
-    amplitude, offset : in the input's unit.
+    amplitude, offset : in the SI unit of the input.
     frequency : in Hz, above 0.
     phase : in rad.
 
@@ -121,7 +121,12 @@ class Sine(Signal):
 @final
 @dataclass(frozen=True)
 class Step(Signal):
-    """A jump at `time` [s] from `before` to `after`, which holds at `time` itself.
+    """A jump from one value to another, which holds at the time of the jump itself.
+
+    Parameters
+    ----------
+    time : of the jump [s].
+    before, after : the two values, in the SI unit of the input.
 
     Raises
     ------
@@ -143,7 +148,12 @@ class Step(Signal):
 @final
 @dataclass(frozen=True)
 class Ramp(Signal):
-    """The signal `before` until the time `start` [s], `after` from `stop` on, a line between.
+    """A constant, a straight line to another value, and that value from then on.
+
+    Parameters
+    ----------
+    start, stop : times at which the line begins and ends [s].
+    before, after : the two values, in the SI unit of the input.
 
     Raises
     ------
@@ -183,11 +193,13 @@ class _Wave(Signal):
 @final
 @dataclass(frozen=True)
 class Triangle(_Wave):
-    """A triangle wave that starts at `offset`, rising, and reaches offset +- amplitude.
+    """A triangle wave between offset - amplitude and offset + amplitude.
+
+    At t = 0 it is at the offset, and rises.
 
     Parameters
     ----------
-    amplitude, offset : in the input's unit.
+    amplitude, offset : in the SI unit of the input.
     frequency : in Hz, above 0.
 
     Raises
@@ -217,9 +229,11 @@ class Triangle(_Wave):
 class Square(_Wave):
     """A square wave: offset + amplitude in the first half of each period, then offset - amplitude.
 
+    The first period begins at t = 0.
+
     Parameters
     ----------
-    amplitude, offset : in the input's unit.
+    amplitude, offset : in the SI unit of the input.
     frequency : in Hz, above 0.
 
     Raises
@@ -244,12 +258,14 @@ class Square(_Wave):
 @final
 @dataclass(frozen=True)
 class Chirp(Signal):
-    """A sine whose frequency moves linearly from `f_start` to `f_stop`, then stays.
+    """The sine offset + amplitude sin(angle); its frequency goes linearly from one to another.
+
+    The angle is 0 at t = 0; after the sweep the last frequency stays.
 
     Parameters
     ----------
-    amplitude, offset : in the input's unit.
-    f_start, f_stop : in Hz, above 0.
+    amplitude, offset : in the SI unit of the input.
+    f_start, f_stop : frequency at t = 0, and from t = duration on; in Hz, above 0.
     duration : time of the sweep [s], above 0.
 
     Raises

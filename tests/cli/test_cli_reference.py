@@ -27,6 +27,14 @@ def test_the_example_of_a_kind_is_an_element_of_it(kind, call):
         assert field in out
 
 
+def test_what_numbers_equations_is_named(call):
+    paper = "Caballeria, Ramirez, Le Gorrec (2021)"
+    assert paper in call("kinds").out
+    assert paper in call("kinds", "transducer").out
+    assert paper not in call("kinds", "gear").out
+    assert "`mechanical` is another name of `translation`" in call("kinds", "transducer").out
+
+
 def test_a_kind_that_is_none_is_refused(call):
     answer = call("kinds", "sprin")
     assert (answer.code, answer.out) == (2, "")

@@ -34,7 +34,7 @@ static double all(long r)
     double *rate = filled(n - short_of, 0.0), *jacobian = filled(n*n, 0.0);
     double *y = filled(piezo_stack_output_count, 0.0), *power = filled(piezo_stack_output_count, 0.0);
     double *hot = filled(piezo_stack_body_count, 0.0), *heat = filled(rows, 0.0);
-    double *produced = filled(rows, 0.0), *inside = filled(piezo_stack_limit_count, 0.0);
+    double *produced = filled(rows, 0.0), *inside = filled(piezo_stack_condition_count, 0.0);
     double *start = filled(n, 0.0);
     piezo_stack_initial_state(u, &p, start);
     piezo_stack_rhs(x, u, &p, rate);
@@ -48,7 +48,7 @@ static double all(long r)
     double total = piezo_stack_energy(x, &p) + piezo_stack_entropy(x, &p);
     total += sum(rate, n - short_of) + sum(jacobian, n*n) + sum(y, piezo_stack_output_count);
     total += sum(power, piezo_stack_output_count) + sum(hot, piezo_stack_body_count);
-    total += sum(heat, rows) + sum(produced, rows) + sum(inside, piezo_stack_limit_count);
+    total += sum(heat, rows) + sum(produced, rows) + sum(inside, piezo_stack_condition_count);
     total += sum(start, n);
     free(inductance);
     free(slope);

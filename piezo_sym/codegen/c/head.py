@@ -20,9 +20,9 @@ MOST_LANES = 16  # of a bank whose values stand in the header
 #: What functions do that the program does not describe.
 FUNCTIONS = {
     "states": "Number of states n",
-    "processes": "Number of processes; of a bank, one per lane",
-    "jacobian": "Derivative of rhs by the state, n x n, row after row",
-    "margins": "Margin of each condition of the domain; of a bank, the least over its lanes",
+    "processes": "Number of processes, which produce entropy; of a bank, one per lane",
+    "jacobian": "Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]",
+    "margins": "Margin by which conditions of the domain hold; of a bank, the least of its lanes",
 }
 _ORDER = (
     "states processes initial_state rhs jacobian outputs supply energy entropy temperatures heat "
@@ -57,8 +57,14 @@ def text_of(text: str) -> str:
 def opening(program: Program) -> str:
     """Return the comment at the head of both files."""
     notes = ["C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno."]
-    lines = described(program, text_of, notes)
+    p = pointer_name(program)
+    lines = described(program, text_of, notes, (p, f"pointer to {program.name}_parameters"))
     return "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */"])
+
+
+def pointer_name(program: Program) -> str:
+    """Return what functions call the pointer to their parameters: p, or where it is taken p_."""
+    return added(("p",), program, c_names(program))["p"]
 
 
 def _parameters(program: Program) -> Iterator[str]:
@@ -113,9 +119,9 @@ def _numbers(program: Program) -> Iterator[str]:
         "input": program.inputs,
         "output": program.outputs,
         "body": program.bodies,
-        "limit": program.limits,
+        "condition": program.limits,
     }
-    yield "/* Sizes that no bank changes: of inputs, outputs, bodies, conditions of the domain. */"
+    yield "/* Numbers of inputs, outputs, thermal bodies and conditions of the domain. */"
     yield "enum {"
     for word, fields in sizes.items():
         yield f"    {program.name}_{word}_count = {len(fields)},"
@@ -180,7 +186,7 @@ def _given(
         "rhs": ("n", ()),
         "jacobian": ("n*n", ()),
         "elements": (elements, program.elements),
-        "margins": (f"{program.name}_limit_count", ()),
+        "margins": (f"{program.name}_condition_count", ()),
     }
     layouts: dict[str, tuple[str, Sequence[Described]]] = {
         "x": ("n", program.states),
@@ -198,7 +204,7 @@ def _given(
     if name == "margins":
         for n, limit in enumerate(program.limits):
             inside = "> 0" if limit.strict else ">= 0"
-            yield from wrapped(f"{words['out']}[{n}]: {limit.text}; inside, {inside}")
+            yield from wrapped(f"{words['out']}[{n}] {inside} where {limit.text}")
 
 
 def comment(doc: str) -> list[str]:

@@ -39,7 +39,7 @@ _REALS = (
 )
 _ENDS = (
     *("parameters", "states", "processes", "jacobian", "margins"),
-    *("input_count", "output_count", "body_count", "limit_count"),
+    *("input_count", "output_count", "body_count", "condition_count"),
 )
 
 KEPT = (

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from piezo_sym.codegen.c.head import has_defaults, opening, wrapped
+from piezo_sym.codegen.c.head import has_defaults, opening, pointer_name, wrapped
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.program import Program
 
@@ -24,7 +24,7 @@ extern "C" {{
 /*
  * Size of `space`, the working memory of a step, in numbers.
  */
-long {model}_step_size(const {model}_parameters *p_);
+long {model}_step_size(const {model}_parameters *{p});
 
 /*
 {doc}{example}
@@ -32,7 +32,7 @@ long {model}_step_size(const {model}_parameters *p_);
 int {model}_step(double *x,
 {indent}const double *u,
 {indent}double h,
-{indent}const {model}_parameters *p_,
+{indent}const {model}_parameters *{p},
 {indent}double *booked,
 {indent}double *space);
 
@@ -75,8 +75,8 @@ def c_step_header(program: Program, made: Collocation) -> str:
     doc = "\n".join(f" * {line}".rstrip() for line in _doc(program, made))
     indent = " " * len(f"int {program.name}_step(")
     example = _example(program, made) if has_defaults(program) else ""
-    words = {"opening": opening(program), "model": program.name, "doc": doc, "indent": indent}
-    return _TEXT.format(**words, example=example)
+    words = {"opening": opening(program), "model": program.name, "p": pointer_name(program)}
+    return _TEXT.format(**words, doc=doc, indent=indent, example=example)
 
 
 def _example(program: Program, made: Collocation) -> str:
@@ -110,14 +110,15 @@ def _doc(program: Program, made: Collocation) -> Iterator[str]:
     ports = ", ".join(field.name for field in program.outputs)
     processes = ", ".join(field.spread for field in program.processes)
     known = len(program.outputs) + 2 * len(program.processes)
-    exchanges = len(made.stage.booked) - known
+    bodies = ", ".join(record.slot.label for record in made.stage.booked[known:])
     yield from wrapped(
         f"booked, written: energy supplied [J] by {ports or 'no port'}; then heat [J], and then "
         f"entropy produced [J/K], by {processes or 'no process'}"
-        + ("; then the entropy [J/K] that each heat exchange brings" if exchanges else "")
+        + (f"; then entropy [J/K] that heat exchange brings to {bodies}" if bodies else "")
     )
+    size = f"{program.name}_step_size({pointer_name(program)})"
     yield from wrapped(
-        f"space[{program.name}_step_size(p_)], read and written: set it to zero before the "
-        "first step, then leave it as it is; it keeps the largest magnitude of each state, with "
-        "which rounding errors are compared"
+        f"space[{size}], read and written: set it to zero before the first step, then leave it "
+        "as it is; it keeps the largest magnitude of each state, with which rounding errors are "
+        "compared"
     )

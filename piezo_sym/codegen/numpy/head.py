@@ -10,6 +10,7 @@ from collections.abc import Iterable
 
 from piezo_sym.codegen.program import Described, Program, described
 from piezo_sym.expressions import functions
+from piezo_sym.spec.names import fresh
 
 STANDARD = ("from dataclasses import dataclass", "from typing import NamedTuple")
 
@@ -61,7 +62,7 @@ RATES = '''_BLOCK = 150_000  # numbers in one part of a large batch: they fit in
 
 
 def rhs(x, u, p, /):
-    """Rates dx/dt = J_ir dU/dx + g u; shape (n, *batch)."""
+    """Rates dx/dt, the rows of J_ir dU/dx + g u; shape (n, *batch)."""
     x, u = _states(x, p), _inputs(u)
     out = np.empty(x.shape)
     if x.ndim != 2 or x.size <= _BLOCK:
@@ -79,9 +80,10 @@ def head(program: Program, text: str = "") -> str:
     called = [r.numpy_helper for r in functions.RECORDS.values() if f"{r.numpy}(" in text]
     imports, definitions = zip(("", ""), *(lines for lines in called if lines), strict=True)
     standard = "\n".join(sorted({*STANDARD, *imports} - {""}))
+    p, counts = fresh("p", program.taken), "Parameters."
     notes = ["Arrays have shape (n, *batch); values are in SI units."]
     parts = [
-        '"""' + "\n".join([*described(program, _plain, notes, "Parameters."), '"""']),
+        '"""' + "\n".join([*described(program, _plain, notes, (p, "Parameters()"), counts), '"""']),
         f"{standard}\n\nimport numpy as np",
         *definitions[1:],
         f'NAME = "{program.name}"\nSPEC_SHA256 = "{program.sha256}"',
@@ -121,14 +123,19 @@ def literal(text: str) -> str:
 
 
 def _tables(program: Program) -> Iterable[str]:
+    yield "# rows of x, and of u with their values where nothing else is said"
     yield from _records("STATES", program.states)
     yield from _records("INPUTS", program.inputs)
     defaults = [str(program.defaults[field.name]) for field in program.inputs]
     yield f"INPUT_DEFAULTS = {_tuple(defaults)}"
+    yield "# rows of outputs() and supply(): ports, named after the elements that have the inputs"
     yield from _records("OUTPUTS", program.outputs)
+    yield "# rows of heat() and entropy_production(): processes, with the unit of the second"
     yield from _records("PROCESSES", program.processes)
+    yield "# rows of temperatures(), and of elements()"
     yield from _records("BODIES", program.bodies)
     yield from _records("ELEMENTS", program.elements)
+    yield "# fields of Parameters; elements of many lanes; conditions under which the proofs hold"
     yield from _records("PARAMETERS", program.parameters)
     yield f"BANKS = {_tuple([literal(bank) for bank in program.counts])}"
     yield "DOMAIN = ("

@@ -88,7 +88,7 @@ class _Printer:
 
     def jacobian(self) -> str:
         """Return the function that fills the Jacobian."""
-        doc = "Derivative of rhs by the state; shape (n, n, *batch)"
+        doc = "Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)"
         roots = tuple(jacobian_roots(self.program.jacobian))
         lines = self._opening("jacobian", ("x", "u", "p"), doc, None, roots)
         lines.append(f"{self.out} = np.zeros(({self.x}.shape[0], *{self.x}.shape))")
@@ -99,7 +99,7 @@ class _Printer:
     def margins(self) -> str:
         """Return the function that tells how far inside its domain a state is."""
         limits = self.program.limits
-        doc = "Margin of each condition of DOMAIN; of a bank, the least over its lanes"
+        doc = "Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes"
         doc += "; shape (len(DOMAIN), *batch)"
         roots = [limit.margin for limit in limits]
         lines = self._opening("margins", ("x", "u", "p"), doc, None, roots)

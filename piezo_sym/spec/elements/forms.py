@@ -132,7 +132,8 @@ def coupling(
         named = f"{'alpha' if gyrates else 'n'}_{name}"
         return (Coupling(own, first, other, domain, law, ratio, named, gyrates),)
 
-    equations = (_equations(ratio, (one, first), pair, gyrates) for pair in pairs[: len(second)])
+    equations = [_equations(ratio, (one, first), pair, gyrates) for pair in pairs[: len(second)]]
+    equations += [f"`{alias}` is another name of `{pairs[0][0]}`: give one."] if alias else []
     return Form(
         fields=fields,
         doc="\n\n".join(equations),

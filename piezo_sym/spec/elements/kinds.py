@@ -62,7 +62,7 @@ TABLE = (
     Kind("damper", "A damper between two nodes, the damping term of eq. (10).", _DAMPER),
     Kind(
         "stop",
-        "An elastic-plastic element between two nodes, with hysteresis of any slowness.",
+        "An elastic-plastic element between two nodes: hysteresis at any rate, also the slowest.",
         _STOP,
     ),
     Kind("lever", "An ideal lever between two pairs of nodes.", _LEVER),
