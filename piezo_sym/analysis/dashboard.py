@@ -29,6 +29,7 @@ WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
 ABROAD = 48  # characters of a legend, beside the power of ten of an axis
 HANDLE = 5  # characters that the line beside a name takes
 HATCHES = ("", "///", "...", "xxx")  # of areas whose colours are used up
+BESIDE = 24  # characters of names beside an axis
 MOST_LANES = 8  # drawn one by one; of more, the mean and the range are drawn
 LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
 SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
@@ -97,8 +98,7 @@ def refuse_others(run: xarray.Dataset) -> None:
 
 def _panels(run: xarray.Dataset) -> Iterator[Panel]:
     for unit, names in _by_unit(run).items():
-        shown = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
-        yield f"{shown} [{unit}]", partial(_lines, run=run, names=names)
+        yield f"{_shown(names)} [{unit}]", partial(_lines, run=run, names=names)
     sums = (
         ("heat released [J]", _stack, "heat_"),
         ("entropy produced [J/K]", _stack, "produced_"),
@@ -109,6 +109,12 @@ def _panels(run: xarray.Dataset) -> Iterator[Panel]:
             yield label, partial(draw, run=run, names=names, prefix=prefix)
     draw = partial(_lines, names=["energy_residual"], prefix="energy_")
     yield "energy residual [J]", partial(draw, run=run)
+
+
+def _shown(names: list[str]) -> str:
+    """Return the first names of a panel, as many as stand beside it; its legend has all."""
+    count = max([1, *(n for n in (2, 3) if len(", ".join(names[:n])) <= BESIDE)])
+    return ", ".join(names[:count]) + (", ..." if len(names) > count else "")
 
 
 def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from piezo_sym.cli.output import about, console, row, table
+from piezo_sym.errors import listing
 
 if TYPE_CHECKING:
     from piezo_sym.algebra.lanes import LaneMatrix
@@ -55,7 +56,7 @@ def _banks(model: Model) -> Iterator[str]:
 
 
 def _elements(model: Model) -> None:
-    """Print the elements with their values in SI, and what inputs and states are if not given."""
+    """Print elements, inputs and parameters with values in SI, and what holds if not given."""
     from piezo_sym.spec.flatten import inputs_of
 
     made = table("Elements", "name", "kind", "where", "laws and values (SI)", "state at t = 0")
@@ -70,6 +71,12 @@ def _elements(model: Model) -> None:
         doc = entry.doc if name in used else f"{entry.doc} (no element uses it)".strip()
         row(made, name, entry.dimension.si, f"{entry.si:g}", doc)
     if model.inputs:
+        console().print(made)
+    made = table("Parameters", "name", "value (SI)", "unit", "what it is")
+    for name, parameter in model.parameters.items():
+        values = listing((f"{value:g}" for value in parameter.lanes), 8)
+        row(made, name, values, parameter.dimension.si, parameter.doc)
+    if model.parameters:
         console().print(made)
 
 

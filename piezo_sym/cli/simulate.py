@@ -197,6 +197,8 @@ def _print(result: xarray.Dataset) -> None:
     for name, variable in result.data_vars.items():
         values = variable.values[-1] if "time" in variable.dims else variable.values
         last = values.reshape(-1)  # of an event, at its hits
+        if not last.size:
+            continue
         value = ", ".join(f"{v:.6g}" for v in last[:4])
         more = ", ..." if last.size > 4 else ""
         unit, about = (str(variable.attrs.get(key, "")) for key in ("units", "long_name"))

@@ -135,6 +135,16 @@ def test_a_legend_covers_no_curve(lanes):
         )
 
 
+def test_the_name_of_an_axis_is_no_longer_than_its_panel():
+    figure = plot(actuator(times=11, outputs="all"))
+    assert "V_in, capacitor.effort, ... [V]" in labels(figure)
+    assert "spring.effort, ... [N]" not in labels(figure)
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        named = axes.yaxis.label.get_window_extent()
+        assert named.height <= 1.25 * axes.get_window_extent().height
+
+
 def test_the_only_curve_of_a_panel_is_named_once():
     figure = plot(actuator(times=11))
     assert panel(figure, "q").get_legend() is None

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from piezo_sym import Model, PiezoError, generate
+from piezo_sym import Model, PiezoError, generate, load
 from piezo_sym.build import render
 from piezo_sym.errors import FileError, ProofError
 from tests.conftest import full_disk
@@ -63,6 +63,19 @@ def test_a_folder_that_cannot_be_made_is_named(model, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(FileError, match=r"file/piezo_stack/piezo_stack.py': cannot be written"):
         generate(model, tmp_path / "file")
+
+
+@pytest.mark.parametrize(("spec", "p"), [("piezo_stack", "p_"), ("dc_motor", "p")])
+def test_the_head_of_every_file_explains_what_it_uses(spec, p):
+    """The equations, what proofs cover, and what functions call the parameters."""
+    texts = [text for path, text in render(load(spec)).items() if "proofs" not in path]
+    assert "heat exchange with the surroundings aside" in texts[0]
+    for text in texts:
+        head = text[:2000]
+        assert "dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k" in head
+        assert "rows of `piezo-sym verify`; what is PROVED holds for all states" in head
+        assert f"\n{p} = Parameters()" in head or f"\n * {p} = pointer to {spec}_param" in head
+        assert ("beside the model's own p" in head) == (p == "p_")
 
 
 def test_what_is_not_proved_is_not_written(unproved, tmp_path):

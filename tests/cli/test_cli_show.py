@@ -12,6 +12,14 @@ def test_the_text_has_the_equations_and_the_matrices(call):
         assert title in lines
 
 
+def test_parameters_have_their_values_in_si(call, spec_file):
+    """Also those of laws, which have no value of their own: d*v."""
+    text = call("show", spec_file('4e2,    unit = "N*s/m"', '0.4,    unit = "N*s/mm"')).out
+    lines = [" ".join(line.split()) for line in text.splitlines()]
+    assert "d 400 N*s/m damping" in lines
+    assert "T_0 296.15 K reference temperature" in lines
+
+
 def test_the_driving_force_that_an_input_adds_to_is_shown(call):
     """A voltage across a resistor and a capacitor: the bracket is -Q/C alone."""
     text = call("show", "stack_maxwell").out
