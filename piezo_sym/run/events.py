@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -40,12 +40,14 @@ EVEN, ROUNDS = 63, 16
 class Watched:
     """What is looked for: events (name -> expression), and the condition on which a run ends.
 
-    `stop` is positive where that, in words `condition`, holds.
+    `stop` is positive where that, in words `condition`, holds. `signs` are those of events at the
+    end of what was looked at so far, from which a run in windows goes on.
     """
 
     event: Mapping[str, Expr]
     stop: Expr | None
     condition: str = ""
+    signs: dict[str, float] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
         """Return whether there is anything to look for."""
@@ -164,8 +166,10 @@ def look(
         first = np.flatnonzero(margin > 0)[:1].tolist()
         brackets += [_Bracket("", watched.stop, times[[k - 1, k]]) for k in first]
     for name, tree in watched.event.items():
-        places = _crossings(values_of(system, tree, seen))
-        brackets += [_Bracket(name, tree, times[[k - 1, k]]) for k in places]
+        signs = _signs(np.append(watched.signs.get(name, 0.0), values_of(system, tree, seen)))
+        watched.signs[name] = float(signs[-1])
+        changed = np.flatnonzero((signs[1:] != signs[:-1]) & (signs[:-1] != 0)).tolist()
+        brackets += [_Bracket(name, tree, times[[max(k - 1, 0), k]]) for k in changed]
     found = [(b.name, float(b.times[1])) for b in _narrowed(system, brackets, run)]
     end = next((t for name, t in found if not name), None)
     kept = [(name, t) for name, t in found if end is None or t <= end]
@@ -177,12 +181,6 @@ def _signs(values: FloatArray) -> FloatArray:
     """Return the sign of each value; what is zero or nan has the one before it."""
     signs: FloatArray = np.nan_to_num(np.sign(values))
     return signs[np.maximum.accumulate(np.where(signs != 0, np.arange(signs.size), 0))]
-
-
-def _crossings(values: FloatArray) -> list[int]:
-    signs = _signs(values)
-    changed = (signs[1:] != signs[:-1]) & (signs[:-1] != 0)
-    return (np.flatnonzero(changed) + 1).tolist()
 
 
 @final

@@ -125,8 +125,8 @@ def simulate(
         Couplings have `.effort_1` ... `.flow_2`, and the power from branch 1 to 2; a storage,
         `.effort_<state>`.
     store : a path, ``"run.zarr"``: the run goes into a new Zarr store, window after window, and the
-        Dataset is read from there when it is asked for. Steps end where windows of some 100,000
-        samples do. Needs `piezo_sym[store]`.
+        Dataset is read from there when it is asked for; events are written at the end. Steps end
+        where windows of some 100,000 samples do. Needs `piezo_sym[store]`.
     progress : a function, told the time [s] reached, now and then; True, for a bar.
     dissipative_start : for discrete_gradient with `step`. The first step after t = 0, and after
         each jump of an input, is made of four quarters that damp what is much faster than they are,

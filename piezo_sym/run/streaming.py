@@ -8,13 +8,14 @@ what they had come to.
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import pairwise
 from os import PathLike, fspath
 from pathlib import Path
 from threading import current_thread, main_thread
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -50,19 +51,21 @@ def streamed(
 ) -> xarray.Dataset:
     """Run through all samples into a new store, and return what it holds."""
     events, stop = watched
-    if events:
-        what = "events of a run into a store are not kept"
-        raise UsageError(what, "simulate.events", "none", "leave out store, or take stop")
     path = _new(store)
+    hits: list[xarray.Dataset] = []  # of each window
     written: xarray.Dataset | None = None
+    signs: dict[str, float] = {}
     try:
         for window in _windows(request, samples):
             begin = start if written is None else float(window[0])
             planned = request.planned(begin, float(window[-1]) - begin, state)
             window = np.minimum(window, planned.system.inputs.end)  # by round-off
-            found = planned.dataset(window, read_watched(planned.system, None, stop, request.step))
+            looked = read_watched(planned.system, events, stop, request.step)
+            found = planned.dataset(window, replace(looked, signs=signs))
+            own = [n for n in found.data_vars if {*found[n].dims} & {*looked.event}]
+            at_events, found = found[own], found.drop_dims([*looked.event])
             with held_back():
-                written = _append(path, found, written)
+                written, hits = _append(path, found, written), [*hits, at_events]
             last_state = found.isel(time=-1)
             state = {r.name: last_state[r.name].values for r in request.module.STATES}
             if "stopped" in found.attrs:
@@ -73,10 +76,10 @@ def streamed(
             with held_back():
                 written = _append(path, rest, written)
         if written is not None:
-            vars(stopped)["partial"] = _opened(path, written)
+            vars(stopped)["partial"] = _opened(path, written, _events(path, hits, events))
         raise
     assert written is not None  # there is a window at least
-    return _opened(path, written)
+    return _opened(path, written, _events(path, hits, events))
 
 
 def _windows(request: Request, samples: FloatArray) -> Iterator[FloatArray]:
@@ -120,14 +123,30 @@ def _added(found: xarray.Dataset, before: xarray.Dataset | None) -> xarray.Datas
 def _append(path: Path, found: xarray.Dataset, before: xarray.Dataset | None) -> xarray.Dataset:
     """Write a window after the one before, and return it as written."""
     part = _added(found, before)
+    how = {"mode": "w-", "zarr_format": 3} if before is None else {"append_dim": "time"}
+    _written(part, path, **how)
+    return part
+
+
+def _written(part: xarray.Dataset, path: Path, **how: Any) -> None:
     try:
-        if before is None:
-            part.to_zarr(path, mode="w-", zarr_format=3, consolidated=False)
-        else:
-            part.to_zarr(path, append_dim="time", consolidated=False)
+        part.to_zarr(path, consolidated=False, **how)
     except OSError as cause:
         raise FileError(f"cannot be written: {cause.strerror}", path_text(path)) from cause
-    return part
+
+
+def _events(path: Path, hits: list[xarray.Dataset], events: Iterable[str] | None) -> list[str]:
+    """Write the events of all windows, and return the names of their quantities."""
+    import xarray
+
+    found: list[str] = []
+    for event in (events or ()) if hits else ():
+        own = [str(name) for name, one in hits[0].data_vars.items() if event in one.dims]
+        whole = xarray.concat([one[own] for one in hits], dim=event)
+        with held_back():
+            _written(whole, path, mode="a")
+        found += own
+    return found
 
 
 @contextmanager
@@ -147,9 +166,9 @@ def held_back() -> Iterator[None]:
         signal.raise_signal(number)
 
 
-def _opened(path: Path, part: xarray.Dataset) -> xarray.Dataset:
+def _opened(path: Path, part: xarray.Dataset, events: list[str]) -> xarray.Dataset:
     """Return what a store holds, in the order of a part of it: Zarr knows none."""
     import xarray
 
     found = xarray.open_dataset(path, engine="zarr", consolidated=False)
-    return found[list(part.data_vars)]
+    return found[[*part.data_vars, *events]]

@@ -55,8 +55,33 @@ def test_a_store_is_never_overwritten(tmp_path):
         simulate("piezo_stack", duration=1e-3, store=tmp_path / "run.nc")
     with pytest.raises(UsageError, match=r"simulate\.store: '3' is no path"):
         simulate("piezo_stack", duration=1e-3, store=3)
-    with pytest.raises(UsageError, match="events of a run into a store"):
-        simulate("piezo_stack", duration=1e-3, store=tmp_path / "e.zarr", events={"hit": "q"})
+
+
+@pytest.mark.usefixtures("short_windows")
+def test_events_are_kept(tmp_path):
+    events = {"hit": "q - 1e-4", "never": "q - 5"}
+    given = {"inputs": DRIVE, "duration": 0.02, "times": 501, "rtol": 1e-9, "events": events}
+    whole = simulate("piezo_stack", **given)
+    kept = simulate("piezo_stack", store=tmp_path / "run.zarr", **given)
+    assert set(kept.variables) == set(whole.variables)
+    assert kept.sizes == whole.sizes
+    assert kept.sizes["hit"] == 4
+    assert np.abs(kept.hit - whole.hit.values).max() < 1e-9
+    assert np.abs(kept.phi_at_hit.values - whole.phi_at_hit.values).max() < 1e-9
+    assert kept.hit.attrs == whole.hit.attrs
+
+
+@pytest.mark.parametrize(
+    ("times", "volts"),
+    [([0, 0.01, 0.02], [1, 0, -1]), ([0, 0.01, 0.01, 0.02], [1, 1, -1, -1])],
+    ids=["zero", "jump"],
+)
+@pytest.mark.usefixtures("short_windows")
+def test_an_event_where_windows_meet_is_kept_once(times, volts, tmp_path):
+    """One begins with t = 0.01 s, at which the voltage is 0, or jumps."""
+    given = {"inputs": {"V_in": (times, volts)}, "events": {"zero": "V_in"}}
+    kept = simulate("piezo_stack", duration=0.02, times=201, store=tmp_path / "run.zarr", **given)
+    assert kept.zero.values == pytest.approx([0.01], rel=1e-12)
 
 
 @pytest.mark.usefixtures("short_windows")
