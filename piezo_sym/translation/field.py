@@ -120,8 +120,7 @@ class Value:
 class Need:
     """A condition on `value` where `path` is 1: nonzero, nonnegative or positive, as `kind` says.
 
-    `derived` says that only derivatives need it, `outside` that it is needed outside the domain,
-    too.
+    `derived`: only derivatives need it; `outside`: it is needed outside the domain, too.
     """
 
     kind: str
@@ -139,8 +138,7 @@ class GeneratorField:
     ----------
     gens : the generators; values refer to them by index.
     path : a product of signs, 1 where the branch being read is taken; None to collect no needs.
-    derived : whether a derivative is being read.
-    outside : whether what is being read holds outside the domain, too.
+    derived, outside : whether a derivative is being read, or what holds outside the domain, too.
     needs : the conditions of the divisions, roots and logarithms read so far.
     states : the names by which derivatives are taken.
     signed : generators that are positive (2) or not negative (1).
