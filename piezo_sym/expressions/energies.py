@@ -14,10 +14,12 @@ from math import prod
 from piezo_sym.expressions.calculus import add, compared, derivative, div, inserted, mul, neg
 from piezo_sym.expressions.exact_eval import OUTCOMES
 from piezo_sym.expressions.integrals import MAX_PARTS, NoFormError, by_rules, divided, slope_of
+from piezo_sym.expressions.reflection import reflected
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
     Add,
+    Call,
     Cmp,
     Div,
     Expr,
@@ -70,6 +72,30 @@ def antiderivative(
     if condition is None:
         return otherwise(node, name)
     return _by_branches(plain, condition, name, otherwise, positive)
+
+
+def of_odd(
+    node: Expr, name: str, otherwise: Otherwise, positive: Collection[str] = ()
+) -> Expr | None:
+    """Return an antiderivative of what is odd in `name`, and of whose parts none jumps; or None.
+
+    It is a function of the magnitude, if the law is smooth on each side of zero.
+
+    Parameters
+    ----------
+    otherwise : is asked for that of other forms, where `name` is positive.
+    """
+    try:
+        odd = reflected(node, name) == neg(inserted(node, {}))
+    except ZeroDivisionError:
+        return None
+    above, plain = {*positive, name}, compared(node)
+    side = _settled(plain, above)
+    jumps = any(isinstance(part, Call) and part.function == "sign" for part in walk(node))
+    if not odd or jumps or side == plain or first_choice(side) is not None:
+        return None
+    found = antiderivative(side, name, otherwise, above)
+    return found and inserted(found, {name: Call("abs", (Sym(name),))})
 
 
 def slope(energy: Expr, name: str) -> Expr:

@@ -6,7 +6,7 @@ each name the expression behind it, stated once.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import final
 
@@ -16,7 +16,7 @@ from piezo_sym.algebra.integrals import integral
 from piezo_sym.algebra.lanes import vector
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError, SpecError, quote, with_article
-from piezo_sym.expressions.energies import antiderivative
+from piezo_sym.expressions.energies import antiderivative, of_odd
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Expr, Sym
 from piezo_sym.iphs.system import System
@@ -128,9 +128,15 @@ def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
 
 def _integral(element: str, port: Storage | Body, positive: frozenset[str]) -> Expr:
     """Return the integral of a co-state law by its state; `positive` names are > 0."""
-    energy = antiderivative(
-        port.law, port.state, lambda law, name: integral(law, name, positive), positive
-    )
+    law, state = port.law, port.state
+
+    def asked(above: frozenset[str]) -> Callable[[Expr, str], Expr | None]:
+        return lambda smooth, name: integral(smooth, name, above)
+
+    energy = antiderivative(law, state, positive=positive)
+    if energy is None:
+        energy = of_odd(law, state, asked(positive | {state}), positive)
+    energy = energy or antiderivative(law, state, asked(positive), positive)
     if energy is None:
         what = f"no integral of the law {quote(spell(port.law))} by {port.state} is found"
         expected = "one of the functions of laws, found by SymPy in 5 s"

@@ -7,7 +7,7 @@ sums over lanes: zero proves it for every state, input, parameter and every r.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 import sympy as sp
 
@@ -16,7 +16,7 @@ from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.expressions.calculus import add
 from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Sym, names
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions, Law
 from piezo_sym.proofs.branches import TooManyBranchesError, branches, parts
@@ -32,7 +32,10 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.tables import conditions
+from piezo_sym.spec.tables import conditions, greater
+
+#: What does not hold where a comparison of the same sides does.
+_EXCLUDED = {"<": (">", ">="), "<=": (">",)}
 
 
 def skew(iphs: IPHS) -> Obligation:
@@ -187,12 +190,30 @@ def _is_law(iphs: IPHS, slope: Expr, law: Expr, state: str) -> bool:
         found = branches(Call("together", (slope, law)), known)
     except TooManyBranchesError:
         return False
+    positive = {c.left for c in map(greater, known) if c.op == ">" and c.right == ZERO}
     for branch in found:
+        where = tuple(_undivided(condition, positive) for condition in branch.conditions)
+        if _is_empty(where):
+            continue
         left, right = (iphs.symbols.law(part, {}) for part in parts(branch))
-        at = dict(_edges(iphs, branch.conditions, iphs.symbols[state]))
+        at = dict(_edges(iphs, where, iphs.symbols[state]))
         if not vanishes((left - right).xreplace(at)):
             return False
     return True
+
+
+def _undivided(condition: Cmp, positive: Container[Expr]) -> Cmp:
+    """Return a comparison with zero without divisors that are positive."""
+    left = condition.left
+    while condition.right == ZERO and isinstance(left, Div) and left.right in positive:
+        left = left.left
+    return Cmp(condition.op, left, condition.right)
+
+
+def _is_empty(where: tuple[Cmp, ...]) -> bool:
+    """Return whether two comparisons of the same sides exclude each other."""
+    given = {(c.left, c.right, c.op) for c in where}
+    return any((c.left, c.right, op) in given for c in where for op in _EXCLUDED.get(c.op, ""))
 
 
 def _edges(

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from piezo_sym.expressions.calculus import add, increasing, mul, neg
+from piezo_sym.expressions.reflection import reflected
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Mul, Node, Num, Sym, names
 from piezo_sym.expressions.tree import replace as substituted
@@ -24,7 +25,6 @@ from piezo_sym.proofs.branches import (
     with_choices,
 )
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
-from piezo_sym.proofs.reflection import reflected
 from piezo_sym.proofs.ties import ties
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import (

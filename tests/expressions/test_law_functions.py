@@ -23,6 +23,7 @@ from piezo_sym.expressions.dimensions import dimension, matches
 from piezo_sym.expressions.exact_eval import OUTCOMES, evaluate, value_of
 from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
 from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.reflection import reflected
 from piezo_sym.expressions.tree import (
     Add,
     Call,
@@ -35,7 +36,6 @@ from piezo_sym.expressions.tree import (
     Pow,
     Sym,
 )
-from piezo_sym.proofs.reflection import reflected
 from piezo_sym.proofs.signs import intervals, jets
 from tests.codegen.c_compilers import COMPILERS
 
