@@ -112,6 +112,7 @@ def test_they_start_at_the_sum_of_their_states_and_run_as_one(kind):
         simulate(m, inputs={"u": sine(2.0, 3.0)}, duration=0.5, rtol=1e-9) for m in (several, one)
     )
     assert first.x[0] == second.x[0] == pytest.approx(0.6)
+    assert first.x.attrs["long_name"].endswith(f"of {kind} 'store', 3 of them joined")
     assert first.x.values == pytest.approx(second.x.values, rel=1e-12)
 
 

@@ -201,6 +201,7 @@ def _costate(own: Size, element: Any, state: str) -> Expr:
 
 
 def _storage(own: Size, element: Any, name: str, branch: Branch, law: Expr) -> Storage:
+    several = f", {element.joined} of them joined" * (element.joined > 1)
     return Storage(
         state=state_symbol(element, name),
         law=law,
@@ -209,7 +210,7 @@ def _storage(own: Size, element: Any, name: str, branch: Branch, law: Expr) -> S
         domain=own.domain,
         imposes=own.imposes,
         units=(own.out.state_unit, own.out.unit),
-        doc=f"{own.out.state} of {element.kind} '{name}'",
+        doc=f"{own.out.state} of {element.kind} '{name}'" + several,
     )
 
 
