@@ -239,6 +239,7 @@ def _processes(
     states, driven = iphs.system.B.T, iphs.system.D.T
     T = {placed.element: Sym(body.temperature) for placed, body in iphs.circuit.of(Body)}
     lanes = {c.name for c, slot in zip(costates, iphs.system.states, strict=True) if slot.bank}
+    lanes |= {port.output for placed, port in iphs.circuit.of(DissipativePort) if placed.bank}
     for k, (placed, port) in enumerate(iphs.circuit.of(DissipativePort, Conductor)):
         terms = [*product(states, k, costates, sums), *product(driven, k, inputs, sums)]
         z, defined = add(*terms), list[Quantity]()

@@ -75,8 +75,13 @@ CHAINED = {
     "more": 'kind = "damper", between = ["in@", ">"], velocity = "f**3/(d_c@*f_0**2)", '
     'heats = "body"',
 }
+#: What drives the slip is the tip's velocity less the damper's, one per lane.
+SLIPPING = {
+    "spring": f'{MAXWELL["spring"]}, slip = "abs(v)*f/f_0", heats = "body"',
+    "damper": MAXWELL["damper"],
+}
 CELLS = {"maxwell": MAXWELL, "seen": SEEN, "absorber": ABSORBER, "stop": STOPPED, "damper": DAMPERS}
-CELLS |= {"kelvin": KELVIN, "chained": CHAINED}
+CELLS |= {"kelvin": KELVIN, "chained": CHAINED, "slipping": SLIPPING}
 UNITS = {"k_c": "N/m", "d_c": "N*s/m", "m_c": "kg", "f_c": "N"}
 
 
