@@ -129,7 +129,7 @@ def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> Floa
     try:
         with np.errstate(all="ignore"):
             return np.array(module.initial_state(u, parameters), dtype=float)
-    except ArithmeticError as cause:
+    except (ArithmeticError, LookupError, ValueError) as cause:  # a list of another length, too
         what = f"the initial state cannot be computed: {cause}"
         raise RunError(what, f"model '{module.NAME}'", remedy="check the parameters") from cause
 

@@ -15,6 +15,7 @@ of that lane.
 import ast
 from collections import ChainMap
 from collections.abc import Callable, Collection, Iterable
+from dataclasses import replace
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
@@ -148,7 +149,7 @@ class CFunction:
         elif isinstance(value, ast.List):
             if kind.removeprefix("static ") != f"const {number} [ {len(value.elts)} ]":
                 raise NotShownError("a list of another length")
-            scope.declare(name, [self._kept(part) for part in value.elts])
+            scope.declare(name, [self._part(n, part) for n, part in enumerate(value.elts)])
         elif kind in kinds and value:
             meaning = scope.meaning(kinds[kind], value)
             self.constants += [meaning] if isinstance(meaning, Deferred) else []
@@ -185,6 +186,17 @@ class CFunction:
         """Return what a variable or constant is set to; it is read even if nothing needs it."""
         self.constants.append(self.scope.defer(node))
         return self.constants[-1]
+
+    def _part(self, n: int, node: ast.expr) -> Deferred:
+        """Return a part of a list; ``n < size ? part : (double)NAN`` is of lane n of a bank."""
+        outside = self.scope
+        match node:
+            case ast.IfExp(ast.Compare(lane, [ast.Lt()], [size]), part, ast.Name("NAN")):
+                bank = self.known.bank_of_size.get(outside.read.whole(size))
+                if bank and ast.unparse(lane) == str(n) and not outside.lanes:
+                    self.scope, node = replace(outside, lanes=((str(n), bank),)), part
+        found, self.scope = self._kept(node), outside
+        return found
 
     def _set(self, name: str, node: ast.expr) -> None:
         found = self.scope.names.get(name)
@@ -241,7 +253,8 @@ class CFunction:
             ) if self.scope.lanes and j == k == self.scope.lanes[-1][0]:
                 found = self.scope.names.get(name)
                 if isinstance(found, list) and n == len(found) > 1 and self.name == "initial_state":
-                    return found
+                    own = {part.scope.banks for part in found} <= {(), self.scope.banks}
+                    return found if own else []
         return []
 
     def _is_least(self, role: str, place: ast.expr, at: Value, node: ast.expr) -> bool:

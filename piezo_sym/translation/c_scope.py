@@ -130,7 +130,7 @@ class Scope:
     ----------
     roles : what each argument is: x, u, p, out, or of a stage g, b, rows, s, m.
     names : what else a name means.
-    lanes : the variables and banks of the loops, outermost first.
+    lanes : the variables and banks of the loops, outermost first; in a list, the number of a lane.
     switches : what is written of switching functions, where choices are by branches alone.
     """
 
@@ -232,10 +232,11 @@ class Scope:
                 return value, WHOLE if whole else PLAIN
             case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u", "g"}:
                 return known.part(self.roles[x], self.read.whole(place), bank=False), PLAIN
-            case ast.Subscript(ast.Name(array), ast.Name(j)):
+            case ast.Subscript(ast.Name(array), ast.Name() | ast.Constant() as place):
                 for lane, (loop, bank) in enumerate(self.lanes):
+                    at = ast.unparse(place), bank
                     match names.get(array):
-                        case (Value() as value, Shape("lanes", own)) if (loop, bank) == (j, own):
+                        case (Value() as value, Shape("lanes", own)) if (loop, own) == at:
                             return moved(value, bank, 1) if lane else value, PLAIN
             case ast.Call(ast.Name("wide"), [arg], []) if real:
                 return self.read.any(arg)

@@ -19,7 +19,7 @@ these, as they do all that they do not know.  Comments are left out; of directiv
 
 import ast
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from keyword import iskeyword
 
 from piezo_sym.translation.field import NotShownError
@@ -139,7 +139,12 @@ def _statement(text: str) -> str:
 
 
 def _chosen(text: str) -> str:
-    """Return an expression, ``?`` and ``:`` of C replaced where they stand in no brackets."""
+    """Return an expression, ``?`` and ``:`` of C replaced where they stand in no brackets.
+
+    Parts of a list are expressions.
+    """
+    if text.startswith("[ ") and text.endswith(" ]"):
+        return f"[{', '.join(map(_chosen, _parts(text[2:-2])))}]"
     test, choice, rest = text.partition(" ? ")
     then, _, other = rest.partition(" : ")
     if not choice:
@@ -147,3 +152,15 @@ def _chosen(text: str) -> str:
     if any(part.count("(") != part.count(")") for part in (test, then)):
         raise NotShownError(f"the C file has a choice in brackets: {text[:40]!r}")
     return f"({then}) if ({test}) else ({_chosen(other)})"
+
+
+def _parts(text: str) -> Iterator[str]:
+    """Yield what commas outside brackets separate; behind the last one nothing may stand."""
+    part = ""
+    for piece in text.removesuffix(" ,").split(" , "):
+        part = f"{part} , {piece}" if part else piece
+        if all(part.count(left) == part.count(right) for left, right in ("()", "[]")):
+            yield part
+            part = ""
+    if part:
+        raise NotShownError(f"the C file has a list with a bracket: {part[:40]!r}")

@@ -58,6 +58,7 @@ class _Function:
         self.values: dict[str, Read] = {}
         self.lanes: dict[str, tuple[Value, Value]] = {}
         self.written = Rows(known, self.name)
+        self.own: tuple[str, str] | None = None  # in a list, which lane a part is of, and its bank
         self.field.derived = self.name == "jacobian"
         self.read = Expressions(self.field, known.numbers, known.real, self._leaf, CALLS, False)
 
@@ -157,7 +158,9 @@ class _Function:
         key, banks = self._key(place)
         if isinstance(value, ast.Tuple) and banks and name == "initial_state":
             for lane, part in enumerate(value.elts):
+                self.own = str(lane), banks[0]
                 rows.keep((*key, lane), self._of(part), added=added)
+            self.own = None
         elif name == "margins" and (least := self._least(value)):
             rows.keep((*key, LEAST), least, added=added)
         else:
@@ -231,6 +234,10 @@ class _Function:
                 n, bank = self._slot(place, layout)
                 value = self.known.names[layout.slots[n].label]
                 return value, Shape("lanes", bank) if bank else PLAIN
+            case ast.Subscript(ast.Name(name), place) if self.own and name in self.values:
+                value, shape = self.values[name]
+                if shape.kind == "lanes" and self.own == (ast.unparse(place), shape.bank):
+                    return value, PLAIN
             case ast.Subscript(arg, place):
                 kind = {"(:, None)": "row", "None": "column"}.get(ast.unparse(place))
                 value, shape = self.read.numeric(arg)
@@ -258,6 +265,9 @@ class _Function:
                 value, shape = self.read.numeric(arg)
                 if shape.kind == "lanes":
                     return self.field.lane_sum(value, shape.bank), PLAIN
+            case "ones", [size], [] if not self.x:
+                if bank := self.known.bank_of_size.get(self.read.whole(size), ""):
+                    return self.field.one, Shape("lanes", bank)
             case "ones", [ast.Tuple([size, rest])], []:
                 bank = self.known.bank_of_size.get(self.read.whole(size), "")
                 if bank and ast.unparse(rest) == f"*(1,) * ({self.x}.ndim - 1)":

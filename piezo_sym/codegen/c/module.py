@@ -22,6 +22,7 @@ from piezo_sym.codegen.program import (
     Outer,
     OutputRow,
     Program,
+    bank_of,
     jacobian_roots,
 )
 from piezo_sym.expressions.tree import ZERO, Expr, Neg, Num
@@ -108,7 +109,11 @@ class _Printer:
         name, size = f"{self.lines.names[row.slot.label]}_listed_", len(row.listed)
         fixed = all(isinstance(v.arg if isinstance(v, Neg) else v, Num) for v in row.listed)
         yield f"{'static ' if fixed else ''}const double {name}[{size}] = {{"
-        yield from (f"    {self.lines.text(v, str(j))}," for j, v in enumerate(row.listed))
+        for j, value in enumerate(row.listed):
+            text = self.lines.text(value, str(j))
+            if bank_of(value, self.lines.arrays):  # a lane that may not be there is not read
+                text = f"{j} < {row.slot.bank}_count ? {text} : (double)NAN"
+            yield f"    {text},"
         yield "};"
         yield f"for (long {self.j} = 0; {self.j} < {row.slot.bank}_count; ++{self.j}) {{"
         yield f"    {self.out}[{place}] = {self.j} < {size} ? {name}[{self.j}] : (double)NAN;"

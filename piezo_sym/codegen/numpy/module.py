@@ -7,7 +7,7 @@ identifiers or inside string literals.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
@@ -25,7 +25,7 @@ from piezo_sym.codegen.program import (
     needed,
 )
 from piezo_sym.expressions.text import PRODUCT, UNARY, enclose, piece
-from piezo_sym.expressions.tree import ZERO, Add, Expr, LaneSum, Node, Sym, names
+from piezo_sym.expressions.tree import ZERO, Add, Expr, LaneSum, Node, Sym, names, rename
 from piezo_sym.spec.names import fresh
 
 WIDTH = 96
@@ -73,7 +73,8 @@ class _Printer:
         for n, row in enumerate(function.rows):
             if function.name == "initial_state" and row.value == ZERO and not row.listed:
                 continue
-            lines += self._assign(f"{self.out}[{rows.index(n)}]", _row_text(row), row.value)
+            text = self._listed(row) if row.listed else numpy_text(row.value)
+            lines += self._assign(f"{self.out}[{rows.index(n)}]", text, row.value)
         return _body([*lines, f"return {self.out}"])
 
     def _rates(self, function: ModuleFunction) -> str:
@@ -137,7 +138,9 @@ class _Printer:
         lines += [f"{word} = {check[word]}" for word in given]
         lines += [f"{bank}_count = {self.p}.{bank}_count" for bank in self.program.counts]
         lines += self.states.definitions()
-        lines += self._unpacked(used, f"{self.x}.ndim" if "x" in arguments else "1")
+        rows = function.rows if function else ()
+        listed = {name for row in rows for part in row.listed for name in names(part)}
+        lines += self._unpacked(used, f"{self.x}.ndim" if "x" in arguments else "1", listed)
         note = ""
         for quantity in quantities:
             if quantity.note != note:
@@ -146,12 +149,16 @@ class _Printer:
             lines += self._define(quantity)
         return [*lines, "# result"] if quantities and not (function and function.scalar) else lines
 
-    def _unpacked(self, used: frozenset[str], dimensions: str) -> Iterator[str]:
+    def _unpacked(
+        self, used: frozenset[str], dimensions: str, listed: Collection[str]
+    ) -> Iterator[str]:
+        """Yield what takes names from arguments; lanes are picked from those in lists."""
         program = self.program
         for field in program.parameters:
             if field.name in used and field.bank:
                 arguments = f"{self.p}.{field.name}, {field.bank}_count, {dimensions}"
-                yield f"{field.name} = _lanes({arguments})"
+                ones = f"*np.ones({field.bank}_count)" if field.name in listed else ""
+                yield f"{field.name} = _lanes({arguments}){ones}"
             elif field.name in used:
                 yield f"{field.name} = {self.p}.{field.name}"
         for n, slot in enumerate(self.states.slots):
@@ -185,6 +192,14 @@ class _Printer:
             *(f"    {term}" for term in terms(value, lambda part: piece(part, NUMPY))),
             ")",
         ]
+
+    def _listed(self, row: OutputRow) -> str:
+        """Return a value per lane, each of its own lane's parameters."""
+        parts = list[str]()
+        for lane, value in enumerate(row.listed):
+            own = {name: f"{name}[{lane}]" for name in names(value) if name in self.lanes}
+            parts.append(numpy_text(rename(value, own)))
+        return f"({', '.join(parts)})"
 
     def _rows(self, function: ModuleFunction) -> Places:
         """Return the places of a function's rows."""
@@ -233,12 +248,6 @@ def _certain(program: Program) -> dict[str, str]:
         if quantity.bank and bank_of(quantity.value, found):
             found[quantity.name] = quantity.bank
     return found
-
-
-def _row_text(row: OutputRow) -> str:
-    if row.listed:
-        return f"({', '.join(numpy_text(value) for value in row.listed)})"
-    return numpy_text(row.value)
 
 
 def _body(lines: list[str]) -> str:
