@@ -348,6 +348,7 @@ void stack_maxwell_elements(const double *restrict x,
     const long end_out_slips_power = end_out_slips_flow + slips_count;
     const long end_out_slips_energy = end_out_slips_power + slips_count;
     const long end_out_slips_heat = end_out_slips_energy + slips_count;
+    const long end_out_slips_limit = end_out_slips_heat + slips_count;
     const double m = p_->m;
     const double d = p_->d;
     const double a = p_->a;
@@ -402,6 +403,7 @@ void stack_maxwell_elements(const double *restrict x,
         out[end_out_slips_flow + j] = F_slips*(rate_z + slip_slips);
         out[end_out_slips_power + j] = k_s[j]*power_2(z[j])/2.0;
         out[end_out_slips_energy + j] = slip_slips*F_slips;
+        out[end_out_slips_heat + j] = k_s[j]*r[j];
     }
     /* rates */
     const double rate_p = alpha_ceramic*V_clamped
@@ -435,20 +437,20 @@ void stack_maxwell_elements(const double *restrict x,
     out[21] = v_mass;
     out[22] = F_spring*v_mass;
     out[23] = k*power_2(q)/2.0;
-    out[end_out_slips_heat] = F_damper;
-    out[1 + end_out_slips_heat] = v_mass;
-    out[2 + end_out_slips_heat] = F_damper*v_mass;
-    out[3 + end_out_slips_heat] = F_damper*v_mass;
-    out[4 + end_out_slips_heat] = -F_ext;
-    out[5 + end_out_slips_heat] = v_mass;
-    out[6 + end_out_slips_heat] = -v_mass*F_ext;
-    out[7 + end_out_slips_heat] = T;
-    out[8 + end_out_slips_heat] = rate_S;
-    out[9 + end_out_slips_heat] = T*rate_S;
-    out[10 + end_out_slips_heat] = T_0*c_0*exp(S/c_0);
-    out[11 + end_out_slips_heat] = T;
-    out[12 + end_out_slips_heat] = -lam*(T_e/T - 1.0);
-    out[13 + end_out_slips_heat] = -lam*(T_e - T);
+    out[end_out_slips_limit] = F_damper;
+    out[1 + end_out_slips_limit] = v_mass;
+    out[2 + end_out_slips_limit] = F_damper*v_mass;
+    out[3 + end_out_slips_limit] = F_damper*v_mass;
+    out[4 + end_out_slips_limit] = -F_ext;
+    out[5 + end_out_slips_limit] = v_mass;
+    out[6 + end_out_slips_limit] = -v_mass*F_ext;
+    out[7 + end_out_slips_limit] = T;
+    out[8 + end_out_slips_limit] = rate_S;
+    out[9 + end_out_slips_limit] = T*rate_S;
+    out[10 + end_out_slips_limit] = T_0*c_0*exp(S/c_0);
+    out[11 + end_out_slips_limit] = T;
+    out[12 + end_out_slips_limit] = -lam*(T_e/T - 1.0);
+    out[13 + end_out_slips_limit] = -lam*(T_e - T);
 }
 
 /* Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]. */

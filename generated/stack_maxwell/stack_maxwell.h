@@ -177,7 +177,7 @@ void stack_maxwell_entropy_production(const double *x,
  * Effort, flow, power, energy and heat of elements; of a bank, one row per lane.
  * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
- * out[38 + 5*slips_count], written; must not overlap another argument: amplifier.effort [V],
+ * out[38 + 6*slips_count], written; must not overlap another argument: amplifier.effort [V],
  *     amplifier.flow [A], amplifier.power [W], leads.effort [V], leads.flow [A], leads.power
  *     [W], leads.heat [W], clamped.effort [V], clamped.flow [A], clamped.power [W],
  *     clamped.energy [J], ceramic.effort_1 [V], ceramic.flow_1 [A], ceramic.effort_2 [N],
@@ -186,9 +186,10 @@ void stack_maxwell_entropy_production(const double *x,
  *     spring.energy [J], slips.effort_1 ... slips.effort_slips_count [N], slips.flow_1 ...
  *     slips.flow_slips_count [m/s], slips.power_1 ... slips.power_slips_count [W],
  *     slips.energy_1 ... slips.energy_slips_count [J], slips.heat_1 ... slips.heat_slips_count
- *     [W], damper.effort [N], damper.flow [m/s], damper.power [W], damper.heat [W],
- *     load.effort [N], load.flow [m/s], load.power [W], body.effort [K], body.flow [W/K],
- *     body.power [W], body.energy [J], air.effort [K], air.flow [W/K], air.power [W]
+ *     [W], slips.limit_1 ... slips.limit_slips_count [N], damper.effort [N], damper.flow
+ *     [m/s], damper.power [W], damper.heat [W], load.effort [N], load.flow [m/s], load.power
+ *     [W], body.effort [K], body.flow [W/K], body.power [W], body.energy [J], air.effort [K],
+ *     air.flow [W/K], air.power [W]
  */
 void stack_maxwell_elements(const double *x,
                             const double *u,

@@ -102,6 +102,7 @@ ELEMENTS = (
     Record("slips.power", "W", "power into stop 'slips'", "slips"),
     Record("slips.energy", "J", "energy of stop 'slips'", "slips"),
     Record("slips.heat", "W", "heat of stop 'slips'", "slips"),
+    Record("slips.limit", "N", "largest effort of stop 'slips'", "slips"),
     Record("damper.effort", "N", "force of damper 'damper'"),
     Record("damper.flow", "m/s", "velocity of damper 'damper'"),
     Record("damper.power", "W", "power into damper 'damper'"),
@@ -453,7 +454,7 @@ def entropy_production(x, u, p_, /):
 
 
 def elements(x, u, p_, /):
-    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (38 + 5*slips_count, *batch)."""
+    """Effort, flow, power, energy and heat of elements; of a bank, one row per lane; shape (38 + 6*slips_count, *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     slips_count = p_.slips_count
@@ -509,7 +510,8 @@ def elements(x, u, p_, /):
     row_slips_power = row_slips_flow + slips_count
     row_slips_energy = row_slips_power + slips_count
     row_slips_heat = row_slips_energy + slips_count
-    out = np.empty((14 + row_slips_heat, *x.shape[1:]))
+    row_slips_limit = row_slips_heat + slips_count
+    out = np.empty((14 + row_slips_limit, *x.shape[1:]))
     out[0] = V_in
     out[1] = -i_leads
     out[2] = -i_leads*V_in
@@ -539,20 +541,21 @@ def elements(x, u, p_, /):
     out[row_slips_flow : row_slips_power] = F_slips*(rate_z + slip_slips)
     out[row_slips_power : row_slips_energy] = k_s*z**2/2
     out[row_slips_energy : row_slips_heat] = slip_slips*F_slips
-    out[row_slips_heat] = F_damper
-    out[1 + row_slips_heat] = v_mass
-    out[2 + row_slips_heat] = F_damper*v_mass
-    out[3 + row_slips_heat] = F_damper*v_mass
-    out[4 + row_slips_heat] = -F_ext
-    out[5 + row_slips_heat] = v_mass
-    out[6 + row_slips_heat] = -v_mass*F_ext
-    out[7 + row_slips_heat] = T
-    out[8 + row_slips_heat] = rate_S
-    out[9 + row_slips_heat] = T*rate_S
-    out[10 + row_slips_heat] = T_0*c_0*np.exp(S/c_0)
-    out[11 + row_slips_heat] = T
-    out[12 + row_slips_heat] = -lam*(T_e/T - 1)
-    out[13 + row_slips_heat] = -lam*(T_e - T)
+    out[row_slips_heat : row_slips_limit] = k_s*r
+    out[row_slips_limit] = F_damper
+    out[1 + row_slips_limit] = v_mass
+    out[2 + row_slips_limit] = F_damper*v_mass
+    out[3 + row_slips_limit] = F_damper*v_mass
+    out[4 + row_slips_limit] = -F_ext
+    out[5 + row_slips_limit] = v_mass
+    out[6 + row_slips_limit] = -v_mass*F_ext
+    out[7 + row_slips_limit] = T
+    out[8 + row_slips_limit] = rate_S
+    out[9 + row_slips_limit] = T*rate_S
+    out[10 + row_slips_limit] = T_0*c_0*np.exp(S/c_0)
+    out[11 + row_slips_limit] = T
+    out[12 + row_slips_limit] = -lam*(T_e/T - 1)
+    out[13 + row_slips_limit] = -lam*(T_e - T)
     return out
 
 

@@ -115,7 +115,7 @@ class Stroboscope:
         """
         system, step = self._system, FixedStep(self.duration / self.steps)
         for one in x:
-            check_start(system, one)
+            check_start(system, one, np.inf)  # searches may look beyond the limits of stops
         times = np.linspace(0.0, self.duration, samples)
         runs = collocate([system] * len(x), engine_of(self.module), x, times, step)
         return np.array([runs.trajectory(k).states for k in range(len(x))])

@@ -119,6 +119,9 @@ class _Elements:
         for placed in ports:
             if isinstance(placed.port, DissipativePort):
                 yield self._heat(placed)
+                if placed.port.limit is not None:
+                    effort = placed.port.domain.variable(placed.port.imposes.other)
+                    yield _Part("limit", effort.unit, "largest effort of", placed.port.limit)
 
     def _branch(
         self,

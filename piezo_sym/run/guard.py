@@ -13,7 +13,7 @@ import numpy as np
 from piezo_sym.errors import RunError, listing
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Segment
-from piezo_sym.run.module import by_name, row_name
+from piezo_sym.run.module import GeneratedModule, by_name, row_name
 from piezo_sym.run.system import DrivenModule
 
 NAME = re.compile(r"[A-Za-z_]\w*")
@@ -21,11 +21,17 @@ MOST_VALUES = 4
 #: Inputs are checked so often in each of the longest steps that they allow; numbers in all.
 CHECKS, MOST_NUMBERS = 4, 5_000_000
 
+#: The ending of an element's largest effort; and how far beyond it round-off may be, of it.
+LIMIT, SLACK = ".limit", 1e-9
+
 Value = tuple[str, str, "float | FloatArray"]  # label, unit, value
 
 
-def check_start(system: DrivenModule, x: FloatArray) -> None:
-    """Raise `RunError` if the run cannot start from the state x (n,) at t = 0."""
+def check_start(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> None:
+    """Raise `RunError` if the run cannot start from the state x (n,) at t = 0.
+
+    Stops keep their limits but for `slack`, a part of the limit.
+    """
     t = system.inputs.start
     u = system.inputs.segments[0].at(t)
     try:
@@ -33,9 +39,35 @@ def check_start(system: DrivenModule, x: FloatArray) -> None:
             raise domain_error(system, t, x, u)
         if not np.all(system.finite(x, u)):
             raise rate_error(system, t, x, u)
+        check_limits(system, x, slack)
     except ArithmeticError as cause:
         what = f"the state at t = {t:g} s cannot be evaluated: {cause}"
         raise RunError(what, place(system), remedy="check the parameters") from cause
+
+
+def limited(module: GeneratedModule) -> list[str]:
+    """Return the elements that have a limit: stops."""
+    return [r.name.removesuffix(LIMIT) for r in module.ELEMENTS if r.name.endswith(LIMIT)]
+
+
+def check_limits(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> None:
+    """Raise `RunError` if a stop would start beyond its limit, from the state x (n,)."""
+    module, p, stops = system.module, system.parameters, limited(system.module)
+    if not stops or slack == np.inf:
+        return
+    u = system.inputs.segments[0].at(system.inputs.start)
+    with np.errstate(all="ignore"):
+        found = by_name(module.ELEMENTS, p, module.elements(x, u, p))
+    for stop in stops:
+        effort, limit = np.broadcast_arrays(found[f"{stop}.effort"], found[f"{stop}{LIMIT}"])
+        beyond = np.abs(effort) > limit * (1 + slack)
+        if np.any(beyond):
+            at = np.argmax(beyond)
+            lane = f" in lane {at + 1}" if beyond.ndim else ""
+            what = f"stop '{stop}' starts beyond its limit{lane}: its effort is"
+            what += f" {effort.flat[at]:.6g}, its limit {limit.flat[at]:.6g}"
+            remedy = "change the initial state or the parameters of the stop"
+            raise RunError(what, place(system), "abs(effort) <= limit", remedy)
 
 
 def crossing(

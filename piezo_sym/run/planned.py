@@ -20,7 +20,7 @@ from piezo_sym.run.dataset import Trajectory, element_variables, to_dataset
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.events import Watched, event_variables, look
-from piezo_sym.run.guard import check_inputs, check_start
+from piezo_sym.run.guard import SLACK, check_inputs, check_start
 from piezo_sym.run.inputs import InputValue, read_inputs
 from piezo_sym.run.method import ChosenMethod
 from piezo_sym.run.module import GeneratedModule
@@ -49,6 +49,7 @@ class Request:
     starts: bool  # whether the first step after a jump of the inputs is dissipative
     watch: Watch | None
     outputs: tuple[str, ...] = ()  # quantities of elements
+    slack: float = SLACK  # of limits that the start has to keep
 
     def planned(
         self, start: float, duration: float, state: Mapping[str, LaneValue] | None
@@ -57,7 +58,7 @@ class Request:
         inputs = read_inputs(self.module, self.inputs, duration, start)
         system = DrivenModule(self.module, self.parameters, inputs)
         x = read_initial(self.module, self.parameters, inputs.segments[0].at(start), state)
-        check_start(system, x)
+        check_start(system, x, self.slack)
         return PlannedRun(self, system, x)
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from math import inf
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,7 @@ from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import METHOD, FixedStep, choice, read_order
 from piezo_sym.run.dataset import read_outputs
 from piezo_sym.run.events import read_watched
+from piezo_sym.run.guard import SLACK
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, checked
@@ -172,7 +174,9 @@ def simulate(
     values = read_parameters(module, given)
     chosen = choose_method(module, named, step)
     asked, how = read_outputs(module, outputs), (dissipative_start, progress)
-    request = Request(module, values, inputs, chosen, tolerance, fixed, *how, asked)
+    reached = hasattr(initial, "data_vars") and not parameters  # SciPy's runs know no limits
+    slack = inf if reached else SLACK
+    request = Request(module, values, inputs, chosen, tolerance, fixed, *how, asked, slack)
     if store is not None:
         return streamed(request, start, samples, state, (events, stop), store)
     planned = request.planned(start, length, state)

@@ -66,6 +66,7 @@ def streamed(
             at_events, found = found[own], found.drop_dims([*looked.event])
             with held_back():
                 written, hits = _append(path, found, written), [*hits, at_events]
+            request = replace(request, slack=np.inf)
             last_state = found.isel(time=-1)
             state = {r.name: last_state[r.name].values for r in request.module.STATES}
             if "stopped" in found.attrs:

@@ -17,7 +17,7 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD, Watch, collocate
 from piezo_sym.run.dataset import coordinates, spread
 from piezo_sym.run.engine.engine import Engine, Members, engine_of
-from piezo_sym.run.guard import check_inputs, check_start, inputs_move
+from piezo_sym.run.guard import check_inputs, check_start, inputs_move, limited
 from piezo_sym.run.module import GeneratedModule, row_count
 from piezo_sym.run.parameters import own_initial, read_initial
 from piezo_sym.run.scipy_runs import by_scipy, cause
@@ -86,9 +86,12 @@ def group_at(
 def check_starts(
     systems: Sequence[DrivenModule], engine: Engine | None, start: FloatArray, errors: list[str]
 ) -> None:
-    """Fill in the errors of runs whose start is outside the domain; C finds them."""
+    """Fill in the errors of runs whose start is outside the domain; C finds them.
+
+    It knows the margins of the domain, not the limits of stops.
+    """
     fine = np.zeros(len(systems), dtype=bool)
-    if engine:
+    if engine and not limited(systems[0].module):
         first = systems[0].inputs.segments[0]
         u = np.ascontiguousarray(first.at(first.start)[None])
         x = np.ascontiguousarray(start[:, None])
