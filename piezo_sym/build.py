@@ -7,7 +7,7 @@ Input: a `Model`.  Output: the files of its generated module, or a list of what 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
@@ -15,7 +15,7 @@ from typing import final
 from piezo_sym.codegen import MARK, collocation_of, lower, printed
 from piezo_sym.codegen.program import blank
 from piezo_sym.derivation import derive
-from piezo_sym.errors import DriftError
+from piezo_sym.errors import DriftError, UsageError, quote
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import Report, Verdict, proofs_json, smt2
@@ -111,11 +111,25 @@ def generate(
         If a required property is refuted or open; nothing is written then.
     FileError
         If a file cannot be written.
+    UsageError
+        If a model whose name differs only by case is there.
     """
     folder = path_of(out, "generate.out")
+    refuse_case([model.name], folder)
     files = render(model, allow_unproved=allow_unproved)
     write_together({folder / name: text.encode() for name, text in files.items()})
     return tuple(folder / name for name in files)
+
+
+def refuse_case(models: Sequence[str], out: Path) -> None:
+    """Raise `UsageError` where names of models, or folders there, differ only by case."""
+    known = [entry.name for entry in folder_entries(out)] if out.is_dir() else []
+    for name in models:
+        for other in (*known, *models):
+            if other != name and other.casefold() == name.casefold():
+                what = f"{quote(name)} and {quote(other)} differ only by case"
+                remedy = "rename a model: names become files"
+                raise UsageError(what, "generate", remedy=remedy)
 
 
 def drift(

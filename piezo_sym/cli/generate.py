@@ -38,7 +38,7 @@ def generate(
     from piezo_sym.verification.process import started
 
     started()
-    from piezo_sym.build import shipped_models
+    from piezo_sym.build import refuse_case, shipped_models
     from piezo_sym.spec.load import load
 
     names = specs or []
@@ -47,6 +47,7 @@ def generate(
     if twice := next((name for name in called if called.count(name) > 1), None):
         what = f"two specs are called {quote(twice)}"  # their files would be the same
         raise UsageError(what, "generate", remedy="give each model a name of its own")
+    refuse_case(called, out)
     if check:
         _check(models, names, out, allow_unproved, every or not names)
         return

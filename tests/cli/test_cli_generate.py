@@ -107,3 +107,24 @@ def test_a_folder_that_cannot_be_written_is_one_line(refused, tmp_path):
     (tmp_path / "file").write_text("")
     message = refused("generate", "piezo_stack", "--out", tmp_path / "file")
     assert message.startswith(f"'{tmp_path / 'file' / NAME}': cannot be written")
+
+
+def test_models_whose_names_differ_only_by_case_are_refused(call, spec_file, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    first = Path(spec_file())
+    other = tmp_path / "other.toml"
+    text = first.read_text(encoding="utf-8")
+    other.write_text(text.replace('"mine"', '"Mine"', 1), encoding="utf-8")
+    said = "'{}' and '{}' differ only by case; rename a model: names become files"
+    answer = call("generate", first, other)
+    assert answer.code == 2
+    assert said.format("mine", "Mine") in answer.err
+    assert not (tmp_path / "generated").exists()
+    assert call("generate", first).code == 0
+    for more in ((), ("piezo_stack",)):
+        answer = call("generate", *more, other)
+        assert answer.code == 2
+        assert said.format("Mine", "mine") in answer.err
+        assert answer.err.count("\n") == 1
+    assert [path.name for path in (tmp_path / "generated").iterdir()] == ["mine"]
+    assert call("generate", first).code == 0
