@@ -17,7 +17,7 @@ from pydantic import PrivateAttr, ValidationError, model_validator
 
 from piezo_sym.errors import PiezoError, SpecError, quote
 from piezo_sym.spec.checks.energies import check_energies
-from piezo_sym.spec.checks.laws import check_laws, check_references
+from piezo_sym.spec.checks.laws import check_laws, check_references, check_texts
 from piezo_sym.spec.checks.names import check_names
 from piezo_sym.spec.checks.values import check_values
 from piezo_sym.spec.fields import Included, Tables
@@ -63,8 +63,9 @@ class Model(Tables):
 
     @model_validator(mode="after")
     def _checked(self) -> Model:
-        """Check the tables against each other: names first, values last."""
+        """Check the tables against each other: texts and names first, values last."""
         if self.flatten() is self:
+            check_texts(self)
             check_names(self)
             check_energies(self)
             check_references(self)

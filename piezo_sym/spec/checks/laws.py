@@ -6,6 +6,7 @@ from collections import ChainMap
 from collections.abc import Collection, Mapping
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
+from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
 from piezo_sym.spec.elements import KINDS, LETTERS
 from piezo_sym.spec.elements.base import Element, state_symbol
@@ -21,6 +22,7 @@ from piezo_sym.spec.tables import (
     bodies,
     conditions,
     initial_laws,
+    laws,
     meanings,
     orders,
     seen,
@@ -30,6 +32,12 @@ from piezo_sym.spec.tables import (
 
 #: The states of each bank, which the laws of its own lanes see.
 Cells = dict[str, dict[str, None]]
+
+
+def check_texts(spec: Tables) -> None:
+    """Check that the text of each law can be read; what uses it does not know its place."""
+    for law in laws(spec):
+        parse_law(law.text, law.where)
 
 
 def check_references(spec: Tables) -> None:
