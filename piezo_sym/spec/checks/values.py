@@ -107,9 +107,15 @@ def _value(tree: Expr, values: Mapping[str, Value], where: str) -> Value:
     except (ArithmeticError, ValueError):
         finite = False
     if not finite:
-        remedy = "check the values of its parameters"
-        raise SpecError("has no finite real value", where, remedy=remedy)
+        what = f"has no finite real value{_shown(values)}"
+        raise SpecError(what, where, remedy="check the values of its parameters")
     return found
+
+
+def _shown(values: Mapping[str, Value]) -> str:
+    """Return the values of names, as they end a sentence."""
+    given = ", ".join(f"{word} = {float(value):.6g}" for word, value in values.items())
+    return f": {given}" * bool(given)
 
 
 def _check_condition(
@@ -129,8 +135,7 @@ def _check_condition(
         except (ArithmeticError, ValueError):
             outside = True
         if outside:
-            given = ", ".join(f"{word} = {float(value):.6g}" for word, value in values.items())
-            what += f": {given}" * bool(given)
+            what += _shown(values)
             at = f" in lane {lane + 1}" if count > 1 else ""
             expected = quote(condition_text(condition.tree)) + at
             raise SpecError(what, condition.where, expected, remedy)
