@@ -67,3 +67,16 @@ def test_what_has_no_value_is_said_with_the_values_it_is_made_of(name, value, sa
     text = PIEZO.replace(f"{name} = {{ value = {value}", f"{name} = {{ value = 0.0")
     assert text != PIEZO
     assert refusal(text).startswith(said)
+
+
+@pytest.mark.parametrize("given", ["[parameters]\nT = { value", "[inputs]\nT = { default"])
+def test_a_condition_on_a_temperature_that_is_called_as_the_bodys_is_refused(given):
+    table = given.splitlines()[0]
+    named = PIEZO.replace("(T - T_0)", "(T_body - T_0)").replace("a*T/T_0", "a*T_body/T_0")
+    text = named.replace(table, f'{given} = 400.0, unit = "K" }}', 1)
+    said = "'T' is the temperature of the only body, and a name of this spec; expected one meaning"
+    assert refusal(text).startswith(f"domain.assume[0]: {said}")
+    fine = text.replace('"T > T_0"', '"T_body > T_0"')
+    assert "T" in parse(fine).to_toml()
+    if "value" in given:  # the body's kind needs T > 0, and means the parameter
+        assert parse(fine.replace('"T_0*exp(S/c_0)"', '"T*exp(S/c_0)"'))

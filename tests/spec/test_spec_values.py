@@ -228,7 +228,7 @@ def test_a_start_on_an_edge_of_the_domain_is_not_refused_for_its_rounding(T_e, c
 def test_a_start_without_a_value(start):
     message = refused_edit(('"c_0*log(T_e/T_0)"', f'"{start}"'))
     assert message == (
-        "spec: initial.S: has no finite real value; check the values of its parameters"
+        "spec: initial.S: has no finite real value: M = 0.0035; check the values of its parameters"
     )
 
 

@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping
 from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS, LETTERS
 from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.elements.marks import LawField
@@ -109,6 +110,7 @@ def check_laws(spec: Tables) -> None:
     for condition in conditions(spec):
         _check_words(spec, condition.tree, condition.where, (), words)
         _check_banks(condition, lanes)
+        _check_temperature(spec, condition)
 
 
 def _check_body(element: Element, law: LawField) -> None:
@@ -133,6 +135,21 @@ def _check_banks(condition: Condition, lanes: Mapping[str, str]) -> None:
     if len(mixed) > 1:
         what = f"mixes states of the banks {listing(sorted(mixed))}"
         raise SpecError(what, condition.where, "states of one bank", "write a condition for each")
+
+
+def _check_temperature(spec: Tables, condition: Condition) -> None:
+    """Refuse ``T`` in [domain] where it is a temperature of the spec, and could be the only body's.
+
+    Of another unit it is no letter's twin: then it means what the spec calls so.
+    """
+    own = (table["T"] for table in (spec.parameters, spec.inputs) if "T" in table)
+    alike = any(parse_unit(entry.unit).dimension == parse_unit("K").dimension for entry in own)
+    said = condition.where.startswith("domain.") and "T" in names(condition.tree)
+    if said and len(bodies(spec)) == 1 and alike:
+        (word,) = temperatures(spec)
+        what = "'T' is the temperature of the only body, and a name of this spec"
+        remedy = f"write {quote(word)} if the body is meant; if not, rename what is called 'T'"
+        raise SpecError(what, condition.where, "one meaning", remedy)
 
 
 def _check_initial(spec: Tables) -> None:
