@@ -213,9 +213,12 @@ def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
     """Return two columns as numbers; raise `FileError` at the first cell that is none."""
     import pandas
 
-    with _opened(path) as (_, delimiter, rows), warnings.catch_warnings():
+    with _opened(path) as (header, delimiter, rows), warnings.catch_warnings():
         warnings.simplefilter("error")
         with suppress(ValueError, Warning):  # pandas does not say where; the rows one by one do
+            with path.open(encoding="utf-8-sig") as lines:  # it drops what has no header
+                if any(line.count(delimiter) >= len(header) for line in lines):
+                    raise ValueError("cells without header")
             how: Any = {"index_col": False, "dtype": float, "na_filter": False, "usecols": [t, x]}
             how |= {"sep": delimiter, "skipinitialspace": True, "encoding": "utf-8-sig"}
             table = pandas.read_csv(path, **how)
@@ -223,7 +226,8 @@ def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
             if np.isfinite(both).all():
                 return both[:, 0], both[:, 1]
         filled = ((line, row) for line, row in enumerate(rows, start=2) if row)
-        cells = (_cell(row, n, path, line) for line, row in filled for n in (t, x))
+        whole = ((line, _whole(row, len(header), path, line)) for line, row in filled)
+        cells = (_cell(row, n, path, line) for line, row in whole for n in (t, x))
         both = np.fromiter(cells, dtype=float).reshape(-1, 2)
         return both[:, 0], both[:, 1]
 
@@ -274,6 +278,14 @@ def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> i
         remedy = "name one like the input, or, in Python, say column=..."
         raise UsageError(what, str(path), "one", remedy)
     return others[0]
+
+
+def _whole(row: Sequence[str], most: int, path: Path, line: int) -> Sequence[str]:
+    """Return a row; refuse one with more cells than there are headers, but for empty ones."""
+    if any(cell.strip() for cell in row[most:]):
+        remedy = "write decimals with a point, and a name for each column into the header"
+        raise FileError(f"has {len(row)} cells", f"{path}, line {line}", f"{most}", remedy)
+    return row
 
 
 def _cell(row: Sequence[str], at: int, path: Path, line: int) -> float:

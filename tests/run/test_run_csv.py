@@ -41,6 +41,13 @@ def test_columns_by_name(write):
         ("t,V\n0,1\n1,x\n", {}, FileError, "line 3: 'x' is not a number"),
         ("t,V\n0,1\n\n1\n", {}, FileError, "line 4: '' is not a number"),
         ("t,V\n0,1\n1,1_0\n", {}, FileError, "line 3: '1_0' is not a number"),
+        (
+            "t,V\n0,1\n1,2,5\n2,3\n",
+            {},
+            FileError,
+            "line 3: has 3 cells; expected 2; write decimals",
+        ),
+        ("t,V,W\n0,1,2\n1,2,3,x\n", {"column": "V"}, FileError, "line 3: has 4 cells; expected 3"),
         ("t,V\n0,1\n1,nan\n", {}, FileError, "line 3: 'nan' is not finite"),
         ("t,V\n0,1\n", {"column": "W"}, UsageError, "no column 'W'; known: t, V"),
         ("t,Volt\n0,1\n", {"column": "volt"}, UsageError, "did you mean 'Volt'?"),
@@ -137,3 +144,8 @@ def test_temperatures_in_celsius_are_read(header, tmp_path):
     read = samples_from_csv(path)
     assert np.array_equal(read.values, [293.15, 298.65])
     assert read.unit == "K"
+
+
+def test_cells_that_are_empty_or_quoted_are_none_too_many(write):
+    signal = samples_from_csv(write('t,V,note\n0,1,"a, b",\n1,2,c, ,\n'), column="V")
+    assert np.array_equal(signal.values, [1, 2])
