@@ -122,7 +122,7 @@ def test_a_run_refuses_samples_of_another_dimension(write):
 
 
 def test_rows_that_pandas_does_not_take_are_read_all_the_same(write):
-    long_row = samples_from_csv(write('t,V\n0,1,\n"1",2,more\n'), "V")
+    long_row = samples_from_csv(write('t,V,note\n0,1,\n"1",2,more\n'), "V")
     assert long_row.values.tolist() == [1.0, 2.0]
 
 
