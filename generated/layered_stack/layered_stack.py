@@ -883,6 +883,7 @@ def elements(x, u, p, /):
     return out
 
 
+@np.errstate(divide="ignore", invalid="ignore")
 def jacobian(x, u, p, /):
     """Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)."""
     x = _states(x, p)

@@ -26,6 +26,9 @@ CALLS = {record.numpy: name for name, record in RECORDS.items() if record.smooth
 CALLS |= {"np.abs": "abs", "np.sign": "sign", "np.minimum": "minimum", "np.maximum": "maximum"}
 CALLS |= {"np.clip": "clip"}
 
+#: Of a function that chooses: it says nothing of what is not chosen.
+QUIET = "np.errstate(divide='ignore', invalid='ignore')"
+
 
 def read_numpy(functions: Mapping[str, ast.FunctionDef], known: Proved) -> dict[Key, Value]:
     """Return every row that the functions of a module write; for the rest see `numpy_head`."""
@@ -49,7 +52,13 @@ class _Function:
         arguments = [arg.arg for arg in given.posonlyargs]
         others = {**vars(given), "posonlyargs": [], "returns": node.returns}
         noted = [arg.annotation for arg in given.posonlyargs if arg.annotation]
-        if node.decorator_list or len(arguments) != len(words) or any(others.values()) or noted:
+        marks = [ast.unparse(mark) for mark in node.decorator_list]
+        if (
+            marks not in ([], [QUIET])
+            or len(arguments) != len(words)
+            or any(others.values())
+            or noted
+        ):
             raise refused(node, "the arguments of a function")
         self.words = dict(zip(words, arguments, strict=True))
         self.x = self.words.get("x", "")

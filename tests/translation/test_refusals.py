@@ -24,6 +24,11 @@ NUMPY = {
     "a default that is computed": ("x, u, p_, out, /):", "x, u, p_, out=print(), /):"),
     "an annotation": ("def energy(x, p_, /):", "def energy(x: print(), p_, /):"),
     "a decorator": ("def energy(", "@print\ndef energy("),
+    "a warning that stops": ("def energy(", '@np.errstate(invalid="raise")\ndef energy('),
+    "a decorator that calls": (
+        "def energy(",
+        '@np.errstate(divide="ignore", invalid="ignore")(print)\ndef energy(',
+    ),
     "a table that is computed": ('Record("q", "m",', 'Record("q", open("x").read(),'),
     "another order of states": ('Record("q", "m",', 'Record("p", "m",'),
     "another parameter": ("k: float = 500000.0", "k: float = 500001.0"),

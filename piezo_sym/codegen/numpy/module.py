@@ -7,7 +7,9 @@ identifiers or inside string literals.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import accumulate
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
@@ -29,6 +31,9 @@ from piezo_sym.expressions.tree import ZERO, Add, Expr, LaneSum, Node, Sym, name
 from piezo_sym.spec.names import fresh
 
 WIDTH = 96
+#: Both sides of a choice are computed: what is not chosen may be a root of a negative number.
+QUIET = '@np.errstate(divide="ignore", invalid="ignore")'
+PARTIAL = re.compile(r"/|\*\*\(|np\.(sqrt|log|power)")
 
 
 def numpy_module(program: Program) -> str:
@@ -251,7 +256,15 @@ def _certain(program: Program) -> dict[str, str]:
 
 
 def _body(lines: list[str]) -> str:
-    return "\n".join([lines[0], *(f"    {line}" for line in lines[1:])])
+    text = "\n".join([lines[0], *(f"    {line}" for line in lines[1:])])
+    return f"{QUIET}\n{text}" if any(map(PARTIAL.search, _choices(text))) else text
+
+
+def _choices(text: str) -> Iterator[str]:
+    """Yield what stands in the parentheses of each choice."""
+    for part in text.split("np.where(")[1:]:
+        depths = accumulate(((c == "(") - (c == ")") for c in part), initial=1)
+        yield part[: next((n for n, depth in enumerate(depths) if not depth), None)]
 
 
 def _shape(function: ModuleFunction) -> str:
