@@ -24,6 +24,8 @@ def power(base: Value, exponent: Exponent) -> Value:
     """Return a rational power."""
     if exponent.denominator == 1 and exponent >= 0:
         return base.field.whole_power(base, exponent.numerator)
+    if exponent.denominator != 1 and exponent < 0:  # as laws and texts divide by roots
+        return power(power(base, -exponent), -1)
     q = exponent.numerator if exponent.denominator == 1 else exponent
     return lifted(partial(_power, q), base)
 
