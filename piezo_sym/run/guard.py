@@ -50,6 +50,11 @@ def limited(module: GeneratedModule) -> list[str]:
     return [r.name.removesuffix(LIMIT) for r in module.ELEMENTS if r.name.endswith(LIMIT)]
 
 
+def slack_of(initial: object, parameters: object) -> float:
+    """Return how far beyond limits a run may start: where a run has ended, as SciPy knows none."""
+    return np.inf if hasattr(initial, "data_vars") and not parameters else SLACK
+
+
 def check_limits(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> None:
     """Raise `RunError` if a stop would start beyond its limit, from the state x (n,)."""
     module, p, stops = system.module, system.parameters, limited(system.module)

@@ -226,8 +226,7 @@ def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
             if np.isfinite(both).all():
                 return both[:, 0], both[:, 1]
         filled = ((line, row) for line, row in enumerate(rows, start=2) if row)
-        whole = ((line, _whole(row, len(header), path, line)) for line, row in filled)
-        cells = (_cell(row, n, path, line) for line, row in whole for n in (t, x))
+        cells = (_cell(row, n, path, line, len(header)) for line, row in filled for n in (t, x))
         both = np.fromiter(cells, dtype=float).reshape(-1, 2)
         return both[:, 0], both[:, 1]
 
@@ -280,17 +279,12 @@ def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> i
     return others[0]
 
 
-def _whole(row: Sequence[str], most: int, path: Path, line: int) -> Sequence[str]:
-    """Return a row; refuse one with more cells than there are headers, but for empty ones."""
-    if any(cell.strip() for cell in row[most:]):
-        remedy = "write decimals with a point, and a name for each column into the header"
-        raise FileError(f"has {len(row)} cells", f"{path}, line {line}", f"{most}", remedy)
-    return row
-
-
-def _cell(row: Sequence[str], at: int, path: Path, line: int) -> float:
+def _cell(row: Sequence[str], at: int, path: Path, line: int, most: int) -> float:
     text = row[at].strip() if at < len(row) else ""
     where = f"{path}, line {line}"
+    if any(cell.strip() for cell in row[most:]):
+        remedy = "write decimals with a point, and a name for each column into the header"
+        raise FileError(f"has {len(row)} cells", where, f"{most}", remedy)
     try:
         value = float(text.replace("_", "x"))  # 1_0 is a number in Python alone
     except ValueError as cause:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from math import inf
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +21,7 @@ from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import METHOD, FixedStep, choice, read_order
 from piezo_sym.run.dataset import read_outputs
 from piezo_sym.run.events import read_watched
-from piezo_sym.run.guard import SLACK
+from piezo_sym.run.guard import slack_of
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, checked
@@ -173,10 +172,9 @@ def simulate(
     samples = sample_times(times, step, length, start)
     values = read_parameters(module, given)
     chosen = choose_method(module, named, step)
-    asked, how = read_outputs(module, outputs), (dissipative_start, progress)
-    reached = hasattr(initial, "data_vars") and not parameters  # SciPy's runs know no limits
-    slack = inf if reached else SLACK
-    request = Request(module, values, inputs, chosen, tolerance, fixed, *how, asked, slack)
+    asked, slack = read_outputs(module, outputs), slack_of(initial, parameters)
+    how = dissipative_start, progress, asked, slack
+    request = Request(module, values, inputs, chosen, tolerance, fixed, *how)
     if store is not None:
         return streamed(request, start, samples, state, (events, stop), store)
     planned = request.planned(start, length, state)
