@@ -229,8 +229,12 @@ class Tables(Frozen):
     elements: Table[AnyElement] = Table()
     banks: Table[Bank] = Table()
 
-    @cached_property
+    @property
     def joined(self) -> dict[str, int]:
         """How many stores are joined into each state that `count` makes of several."""
+        return self._joined
+
+    @cached_property
+    def _joined(self) -> dict[str, int]:  # under a name that no iteration over fields has
         several = ((name, e) for name, e in self.elements.items() if e.joined > 1)
         return {s.symbol: e.joined for name, e in several for s in e.own_states(name)}

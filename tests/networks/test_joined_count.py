@@ -165,3 +165,10 @@ def test_what_does_not_fit_is_refused(text, fault):
     with pytest.raises(PiezoError, match=fault) as caught:
         parse(text)
     assert caught.value.exit_code == 2
+
+
+def test_a_model_is_the_same_before_and_after_it_is_asked_what_it_joins():
+    one, two = (parse(spec("mass", '{size} = "M"', 3)) for _ in range(2))
+    assert one.joined == {"x": 3}
+    assert one == two
+    assert dict(one).keys() == dict(two).keys()
