@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from agreement import point
 from hypothesis import assume
+from network_tableau import state
 from runs import METHOD, check_run, distance, jumps, written
 from strategy import derivable, explore
 
@@ -21,6 +22,7 @@ from piezo_sym.spec.load import parse
 SPECS = sorted(Path(__file__).with_name("specs").glob("*.toml"))
 #: What a run is asked for, and how far its states may be from the reference.
 ACCURACIES = ((("rtol", 1e-6), 2e-5), (("rtol", 1e-8), 2e-7), (("step", 1e-3), 1e-3))
+STOPS = ("limit", "stiffness", "capacitance")
 FINISHED, STOPPED = "finished", "stopped"
 
 
@@ -28,6 +30,18 @@ def initial(module, x):
     """Return a state as `simulate` takes it."""
     places = zip(module.STATES, rows(module.STATES, module.Parameters()), strict=True)
     return {r.name: x[at].tolist() if r.bank else float(x[at.start]) for r, at in places}
+
+
+def held(spec, module, x):
+    """Return a state in which no stop is beyond its limit."""
+    p, x = module.Parameters(), x.copy()
+    stops = {state(n, e): e for n, e in spec["elements"].items() if e["kind"] == "stop"}
+    for record, at in zip(module.STATES, rows(module.STATES, p), strict=True):
+        if stop := stops.get(record.name):
+            size = {n: np.asarray(getattr(p, stop[n])) for n in STOPS if n in stop}
+            most = size["limit"] * size.get("capacitance", 1.0) / size.get("stiffness", 1.0)
+            x[at] = np.clip(x[at], -most, most)
+    return x
 
 
 def driven(spec, u, seed):
@@ -58,6 +72,7 @@ def check(spec, seed):
     x, u = point(spec, iphs, seed)
     with tempfile.TemporaryDirectory() as folder:
         module = written(iphs.model, folder, allow_unproved=True)
+        x = held(spec, module, x)
         options = {"initial": initial(module, x), "inputs": driven(spec, u, seed)}
         options |= {"duration": 1.0, "times": 21}
         wanted = attempted(lambda: simulate(module, rtol=1e-10, **options))
