@@ -120,14 +120,14 @@ class Value:
 class Need:
     """A condition on `value` where `path` is 1: nonzero, nonnegative or positive, as `kind` says.
 
-    `derived`: only derivatives need it; `outside`: it is needed outside the domain, too.
+    `derived`: only derivatives need it; `outside`: the function that needs it outside the domain.
     """
 
     kind: str
     value: Value
     path: Value
     derived: bool = False
-    outside: bool = False
+    outside: str = ""
 
 
 @final
@@ -138,7 +138,7 @@ class GeneratorField:
     ----------
     gens : the generators; values refer to them by index.
     path : a product of signs, 1 where the branch being read is taken; None to collect no needs.
-    derived, outside : whether a derivative is being read, or what holds outside the domain, too.
+    derived, outside : whether a derivative is being read; a function outside the domain, or "".
     needs : the conditions of the divisions, roots and logarithms read so far.
     states : the names by which derivatives are taken.
     signed : generators that are positive (2) or not negative (1).
@@ -155,7 +155,7 @@ class GeneratorField:
         self.work = 0
         self.zero, self.one = Value(self, {}), Value(self, {(): 1})
         self.path: Value | None = self.one
-        self.derived = self.outside = False
+        self.derived, self.outside = False, ""
         self.needs: dict[Need, None] = {}
         self.states: frozenset[int] = frozenset()
         self.signed: dict[int, int] = {}

@@ -270,7 +270,7 @@ class _Function:
         match name, args, words:
             case "where", [test, then, other], []:
                 return self.read.choice(test, then, other)
-            case "sum", [arg], ["axis=0"]:
+            case "sum", [arg], ["axis=0"] if self.own is None:  # a lane in a sum is no lane's own
                 value, shape = self.read.numeric(arg)
                 if shape.kind == "lanes":
                     return self.field.lane_sum(value, shape.bank), PLAIN

@@ -148,7 +148,7 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
     for need in needs:
         value = _in_first_lane(need.value)
         op = {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<=")
-        with reading(field, "margins" if need.outside else ""):
+        with reading(field, need.outside):
             fails = compare(op, value, field.zero)
             left = _in_first_lane(need.path) * fails
             for given in allowed.get(value, ()):
@@ -162,7 +162,7 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
 
 def _covers(given: Need, need: Need) -> bool:
     """Return whether a need of laws is one wherever printed code has it."""
-    return (need.derived or not given.derived) and (given.outside or not need.outside)
+    return (need.derived or not given.derived) and need.outside in ("", given.outside)
 
 
 def _in_first_lane(value: Value) -> Value:

@@ -90,7 +90,7 @@ def reading(field: GeneratorField, function: str) -> Iterator[None]:
         yield
         return
     kept = field.signed, field.assumed, field.signs, field.forms, field.never, field.asked
-    outside, field.outside = field.outside, True
+    outside, field.outside = field.outside, function
     counts = (g for g, gen in enumerate(field.gens) if gen.kind == "name" and _counts(gen))
     field.signed, field.assumed = dict.fromkeys(counts, 2), {field.zero: 1}
     field.signs, field.forms, field.never, field.asked = {}, {}, {}, {}

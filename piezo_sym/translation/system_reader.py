@@ -90,23 +90,23 @@ class SystemReader:
     def margins(self, given: Iterable[Cmp]) -> list[Value]:
         """Return the margins of some conditions, of which nothing is taken as true."""
         given = list(given)
-        with self._outside(*given) as letters:
+        with self._outside("margins", *given) as letters:
             return [self._margin(condition, letters) for condition in given]
 
     def law(self, law: Expr) -> Value:
         """Return a law, nothing taken as true."""
-        with self._outside(law) as letters:
+        with self._outside("integrands", law) as letters:
             return self(self.iphs.symbols.law(law, letters))
 
     @contextmanager
-    def _outside(self, *trees: Expr | Cmp) -> Iterator[Mapping[str, sp.Symbol]]:
+    def _outside(self, function: str, *trees: Expr | Cmp) -> Iterator[Mapping[str, sp.Symbol]]:
         """Give letters for names of which nothing is known, and forget what is known of signs."""
         used = dict.fromkeys(name for tree in trees for name in names(tree))
         found = {name: self.costates.get(name, self.names.get(name)) for name in used}
         unsigned = {name: sp.Dummy(name, real=True) for name, value in found.items() if value}
         self.known |= {letter: found[name] for name, letter in unsigned.items()}
         self._forget()
-        with reading(self.field, "margins"):
+        with reading(self.field, function):
             yield unsigned
         self._forget()
 

@@ -233,3 +233,28 @@ def test_a_module_that_computes_erf_in_another_way_is_not_proved(old, new):
     assert old in text
     (row, *_) = different("NumPy", text.replace(old, new), reference_of(iphs))
     assert row.verdict is Verdict.OPEN
+
+
+LOGARITHM = """
+[model]
+name = "walled"
+[parameters]
+M = { value = 2.0, unit = "kg" }
+r = { value = 0.3, unit = "m" }
+F = { value = 0.3, unit = "N" }
+[domain]
+assume = ["M > 0", "r > 0", "q < r"]
+[elements]
+spring = { kind = "spring", between = ["a", "wall"], force = "-F*log(1 - q/r)", state = "q" }
+mass = { kind = "mass", at = "a", mass = "M", state = "p" }
+"""
+
+
+def test_a_margin_of_a_step_has_no_right_to_what_a_mean_needs():
+    iphs = derive(parse(LOGARITHM))
+    texts, known = printed(iphs), reference_of(iphs)
+    assert rows(iphs, texts)[0].verdict is Verdict.PROVED
+    for wrong in ("r*exp_of(log_of(1.0 - q/r))", "(r - q)*M/M"):
+        text = texts["step"].replace("m[0] = r - q;", f"m[0] = {wrong};")
+        assert text != texts["step"]
+        assert different("step", text, known)
