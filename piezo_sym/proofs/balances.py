@@ -16,7 +16,7 @@ from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.expressions.calculus import add
 from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Sym, names
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Mul, Num, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions, Law
 from piezo_sym.proofs.branches import TooManyBranchesError, branches, parts
@@ -203,10 +203,17 @@ def _is_law(iphs: IPHS, slope: Expr, law: Expr, state: str) -> bool:
 
 
 def _undivided(condition: Cmp, positive: Container[Expr]) -> Cmp:
-    """Return a comparison with zero without divisors that are positive."""
-    left = condition.left
-    while condition.right == ZERO and isinstance(left, Div) and left.right in positive:
-        left = left.left
+    """Return a comparison with zero without divisors and numbers that are positive."""
+
+    def plain(node: Expr) -> Expr:
+        match node:
+            case Div(left, right) if right in positive:
+                return plain(left)
+            case Div(left, Num(value)) | Mul(Num(value), left) if value > 0:
+                return plain(left)
+        return node
+
+    left = plain(condition.left) if condition.right == ZERO else condition.left
     return Cmp(condition.op, left, condition.right)
 
 

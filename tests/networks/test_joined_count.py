@@ -2,6 +2,7 @@
 
 import pytest
 import sympy as sp
+from scipy.integrate import quad
 
 from piezo_sym import PiezoError, derive, simulate, sine, verify
 from piezo_sym.proofs import Verdict
@@ -172,3 +173,16 @@ def test_a_model_is_the_same_before_and_after_it_is_asked_what_it_joins():
     assert one.joined == {"x": 3}
     assert one == two
     assert dict(one).keys() == dict(two).keys()
+
+
+def test_a_size_that_bends_at_zero_is_proved_for_several_too():
+    """Each mass has v = p/(M + abs(p)/w): the energy of three is the integral of all three."""
+    iphs = derived("mass", '{size} = "M*(1 + abs({x})/(M*w))"', 3)
+    assert {row.verdict for row in verify(iphs).rows} == {Verdict.PROVED}
+    size = meant("M", iphs), meant("w", iphs), meant("x", iphs), meant("S", iphs)
+    values = dict(zip(size, (0.7, 2.0, 0.0, 0.0), strict=True))
+    values |= {meant("T_0", iphs): 300.0, meant("c", iphs): 2.0}
+    U = [float(iphs.U.subs(values | {size[2]: x})) for x in (0.0, -0.6, 0.9)]
+    for found, x in zip(U[1:], (-0.6, 0.9), strict=True):
+        own = quad(lambda p: p / (0.7 + abs(p) / 2.0), 0.0, x / 3)[0]
+        assert found - U[0] == pytest.approx(3 * own, rel=1e-9)
