@@ -155,9 +155,24 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
                 if {given.kind} in _ENOUGH[need.kind] and _covers(given, need):
                     left = left * (field.one - given.path)
             met = is_zero(left)
-        if not met:
+        if not met and not _is_square_sum(value, known.needs, need):
             where = "jacobian" if need.derived else "code"
             yield f"{where} needs a value to be {need.kind} that is not shown to be so"
+
+
+def _is_square_sum(value: Value, given: tuple[Need, ...], need: Need) -> bool:
+    """Return whether a value is positive: squares of names, one of which laws divide by."""
+    field, other = value.field, {"nonzero", "positive"}
+    nonzero = {
+        g.value for g in given if g.kind in other and g.path == field.one and _covers(g, need)
+    }
+    squares = all(
+        c > 0 and all(field.gens[g].kind == "name" and e > 0 and e % 2 == 0 for g, e in mono)
+        for mono, c in value.terms.items()
+    )
+    return squares and any(
+        all(field.raised(g, 1) in nonzero for g, _ in mono) for mono in value.terms
+    )
 
 
 def _covers(given: Need, need: Need) -> bool:

@@ -254,7 +254,7 @@ def test_a_margin_of_a_step_has_no_right_to_what_a_mean_needs():
     iphs = derive(parse(LOGARITHM))
     texts, known = printed(iphs), reference_of(iphs)
     assert rows(iphs, texts)[0].verdict is Verdict.PROVED
-    for wrong in ("r*exp_of(log_of(1.0 - q/r))", "(r - q)*M/M"):
+    for wrong in ("r*exp_of(log_of(1.0 - q/r))", "(r - q)*M/M", "(r - q)*(M*M + r*r)/(M*M + r*r)"):
         text = texts["step"].replace("m[0] = r - q;", f"m[0] = {wrong};")
         assert text != texts["step"]
         assert different("step", text, known)
