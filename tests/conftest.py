@@ -5,6 +5,7 @@ import resource
 import shutil
 import signal
 import sys
+from collections import defaultdict
 from contextlib import contextmanager
 
 import pytest
@@ -15,6 +16,20 @@ settings.load_profile("repeatable")
 
 # Where pytest runs in the background of a shell, SIGINT is ignored, by all that tests start, too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.hookimpl(tryfirst=True)  # before `-m "not long"` looks at marks
+def pytest_collection_modifyitems(items):
+    """Keep ``some(n)`` cases of a test in the fast tier, spread over all; the others are long."""
+    cases = defaultdict(list)
+    for item in items:
+        if mark := item.get_closest_marker("some"):
+            cases[item.nodeid.split("[")[0], mark.args[0]].append(item)
+    for (_, n), found in cases.items():
+        kept = {k * (len(found) - 1) // max(1, n - 1) for k in range(n)}
+        for k, item in enumerate(found):
+            if k not in kept:
+                item.add_marker(pytest.mark.long)
 
 
 #: Models of which tests take so many steps that optimization pays.

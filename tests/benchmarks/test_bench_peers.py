@@ -149,6 +149,7 @@ def test_a_sample_sees_a_wrong_rate(case_p):
     assert sample.error(rates) > 1e-3  # the voltage is another one
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("lanes", [1, 2, 65])
 def test_batches_by_hand_are_right_for_any_size(case_p, lanes):
     problem = problem_of(case_p.model, {}, 1e-3, {"hysteron": lanes})

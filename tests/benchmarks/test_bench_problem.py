@@ -50,6 +50,7 @@ def at(expressions, problem, x, **more):
     return np.array([float(e.subs({**known, **more}).evalf(25)) for e in expressions])
 
 
+@pytest.mark.some(42)
 @pytest.mark.parametrize("number", range(4))
 def test_explicit_rates_are_the_modules(problem, path, number):
     x, u = drawn(problem, path, number)

@@ -68,6 +68,7 @@ def test_code_in_the_working_folder_is_never_executed(model):
     assert not Path("executed").exists()
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("ending", [".c", ".h", "_step.c", "_step.h"])
 def test_an_edited_text_of_c_is_not_compiled(model, ending):
     path, *_ = generate(model)
@@ -226,6 +227,7 @@ def test_a_model_edited_in_python_is_simulated_as_edited(spec):
     assert result.sizes["hysteron"] == 3
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("text", ["def (", "import no_such_library", "x = y", "x = 1"])
 def test_a_broken_module_in_the_working_folder_does_not_matter(model, text):
     path, *_ = generate(model)

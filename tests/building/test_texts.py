@@ -38,6 +38,7 @@ def text_of(spec):
     return text
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("words", HOSTILE)
 def test_a_text_in_the_head_adds_no_code(spec, words):
     plain = outline(text_of(spec))
@@ -48,6 +49,7 @@ def test_a_text_in_the_head_adds_no_code(spec, words):
     assert ast.get_docstring(ast.parse(text)).count("word") >= 2
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("words", HOSTILE)
 def test_a_text_in_a_record_is_kept_as_it_is(spec, module_from, words):
     spec["parameters"]["M"]["doc"] = words

@@ -52,6 +52,7 @@ def changed(model, rng):
     return data
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("name", shipped())
 def test_a_template_has_every_value(name):
     """Printed with other values, or filled with them: the same texts."""
@@ -118,6 +119,7 @@ def test_a_list_of_values_is_edited_lane_by_lane(spec):
     assert module_of(path).Parameters().L == (1e-3, 3e-3)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("old", "new"),
     [

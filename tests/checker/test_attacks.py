@@ -209,6 +209,7 @@ def test_other_guards_show_nothing(guards):
     assert checked(law, certificate)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("f", "window"),
     [

@@ -11,6 +11,7 @@ def test_slips_are_confirmed():
     assert refused(TEXT, stated(TEXT)) == {}
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("old", "new", "row"),
     [

@@ -53,6 +53,7 @@ WRONGLY_PROVED = {
 }
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", WRONGLY_PROVED)
 def test_a_law_that_gives_power_is_not_confirmed(name):
     text = WRONGLY_PROVED[name]
@@ -97,6 +98,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.some(9)
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_changed_system_is_not_confirmed(name):
     proofs, (old, new) = stated(PIEZO_STACK), CHANGES[name]

@@ -54,6 +54,7 @@ def arguments(command, path):
     return [command, path, *(["--duration", "1"] if command == "simulate" else [])]
 
 
+@pytest.mark.some(60)
 @pytest.mark.parametrize("command", ["verify", "show", "generate", "simulate"])
 @pytest.mark.parametrize(("group", "old", "new", "said"), CASES)
 def test_a_hostile_spec_is_refused(

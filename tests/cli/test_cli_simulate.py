@@ -394,6 +394,7 @@ def test_a_run_that_stops_leaves_a_file_and_says_so(refused, spec_file, tmp_path
         assert float(partial.time[-1]) == pytest.approx(0.0304)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("words", "reader", "written"),
     [
@@ -417,6 +418,7 @@ def test_a_closed_pipe_loses_no_result(words, reader, written, tmp_path):
     assert [name for name in written if not (tmp_path / name).stat().st_size] == []
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("words", ["kinds", "simulate piezo_stack --duration 1e-3", "schema"])
 def test_a_full_output_is_one_line(words):
     command = f"{sys.executable} -m piezo_sym {words} > /dev/full"

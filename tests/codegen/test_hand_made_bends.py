@@ -100,6 +100,7 @@ def ran(module, duration=3.0, **options):
     return run, x, np.abs(u - u[0]).max() / u.max()
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize("way", tiers(WAYS, 1, 2, 7, 10), ids=str)
 def test_balances_close_over_contacts(bounce, way):
     run, x, left = ran(bounce, **way)

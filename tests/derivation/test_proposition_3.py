@@ -83,6 +83,7 @@ def test_entropy_production_of_eq_7(explicit, paper):
     assert normal(explicit.sigma - produced) == 0
 
 
+@pytest.mark.some(21)
 @pytest.mark.parametrize("name", ["x", "u", "E", "J0", "J_ir", "g", "rhs", "y", "y_s"])
 def test_symbolic_size_equals_the_written_out_lanes(iphs, explicit, paper, name):
     counts = {"hysteron": paper.r}

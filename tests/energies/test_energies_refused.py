@@ -34,6 +34,7 @@ def test_states_that_do_not_fit(states, said):
     assert said in refused(GAS.replace(STATES, states))
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(("law", "said"), LAWS.items())
 def test_laws_that_are_no_energy(law, said):
     assert said in refused(SPRING.format(name="spring", law=law))

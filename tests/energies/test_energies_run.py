@@ -42,6 +42,7 @@ def exact():
     return at_end
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(("name", "way", "bound"), CASES)
 def test_runs_agree_with_rates_by_hand_and_close_both_balances(name, way, bound, exact):
     run = ran(name, **way)
@@ -53,6 +54,7 @@ def test_runs_agree_with_rates_by_hand_and_close_both_balances(name, way, bound,
     assert float(np.abs(run.entropy_residual).max()) <= 1e-12 * entropy
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("name", DEVICES)
 def test_all_of_it_is_proved(name):
     report = verify(derive(parse(DEVICES[name][0])))

@@ -45,6 +45,7 @@ def force(law, q):
     return np.sign(q) * LAWS[law](abs(q))
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("law", LAWS)
 def test_it_is_proved_and_has_the_energy_of_quadrature(law):
     text = TEXT.replace("LAW", law)
@@ -59,6 +60,7 @@ def test_it_is_proved_and_has_the_energy_of_quadrature(law):
         assert U(q) - U(0.0) == pytest.approx(quad(lambda z: force(law, z), 0, q)[0], rel=1e-9)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("law", LAWS)
 def test_it_swings_as_its_equation_typed_by_hand(law):
     run = simulate(parse(TEXT.replace("LAW", law)), duration=4.0, rtol=1e-9, times=[0.0, 4.0])

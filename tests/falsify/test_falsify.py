@@ -97,6 +97,7 @@ def test_what_was_wrongly_proved_is_caught(tmp_path, name, row):
         assert shown in str(caught.value)
 
 
+@pytest.mark.some(7)
 @pytest.mark.parametrize("name", WEDGES)
 def test_a_law_that_is_active_on_a_small_set_is_caught(tmp_path, name):
     law = WEDGES[name]

@@ -134,6 +134,7 @@ def explicit(matrix, sizes):
     return list(matrix.explicit(sizes) if hasattr(matrix, "explicit") else matrix)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("cell", CELLS.values(), ids=CELLS)
 @given(seed=st.integers(0, 10**6))
 @settings(max_examples=5, deadline=None)
@@ -157,6 +158,7 @@ def values_of(cell):
     return {name: [1.0, 2.0, 4.0] for name in UNITS if f"{name}@" in str(cell)}
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("cell", CELLS.values(), ids=CELLS)
 def test_every_row_of_a_bank_is_proved(cell):
     report = verify(derive(banked(cell, values_of(cell))))
@@ -247,6 +249,7 @@ FALSE = [
 ]
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("cell", [ABSORBER, KELVIN], ids=["parallel", "series"])
 @pytest.mark.parametrize(("law", "assume"), FALSE)
 def test_no_false_claim_of_a_bank_is_proved(law, assume, cell):

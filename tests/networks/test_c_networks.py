@@ -102,6 +102,7 @@ def check_start(module, compiled, place):
     assert np.all(np.diff(sums[:, -2:], axis=0) >= 0)
 
 
+@pytest.mark.some(17)
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_specs(path):
     model = load(path)

@@ -223,6 +223,7 @@ def states(module):
     return [rng.uniform(-0.5, 0.5, size) for _ in range(10)]
 
 
+@pytest.mark.some(2)
 def test_rates(case):
     _, module, rates = case
     for x in states(module):
@@ -256,6 +257,7 @@ def test_entropy_balance(case):
         assert np.isclose(module.rhs(x, U, p)[0], produced.sum(), rtol=1e-12)
 
 
+@pytest.mark.some(2)
 def test_proofs(case):
     model, _, _ = case
     iphs = derive(model)

@@ -266,6 +266,7 @@ def test_each_element_keeps_its_costate_and_its_energy(case):
     assert sp.simplify(together - stored.xreplace(left)) == 0
 
 
+@pytest.mark.some(2)
 def test_proved(case):
     _, _, iphs = case
     report = verify(iphs)
@@ -273,6 +274,7 @@ def test_proved(case):
     assert {row.id for row in report.rows} >= {"energy", "entropy", "sigma", "units", "program"}
 
 
+@pytest.mark.some(2)
 def test_runs_agree_with_the_rates_by_hand(case):
     by_hand, text, iphs = case
     drive = {name: sine(2.0, 0.7) for name in iphs.model.inputs}

@@ -88,6 +88,7 @@ def balanced(run):
     assert np.diff(run.heat_stop.values, axis=0).min() >= 0
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize("name", ["led", "mass", "coil", "charged"])
 def test_every_row_is_proved(name):
     rows = {(row.id, row.element): row.verdict for row in verify(derive(model(name))).rows}
@@ -196,6 +197,7 @@ def by_events(times, given, stiff, limit):
     return np.array(found)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("rtol", [1e-4, 1e-8])
 @pytest.mark.parametrize("name", ["mass", "coil"])
 def test_a_mass_and_a_coil_follow_their_events(name, rtol):
@@ -253,6 +255,7 @@ def block_on(n, rtol):
     return simulate(model("block"), rtol=rtol, parameters=given, **how)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5, 1e-7])
 def test_steps_do_not_grow_with_the_number_of_stops(rtol):
     """A yield is located where it matters: of many, each is a small part of the mass's force."""

@@ -39,6 +39,7 @@ CASES = [
 ]
 
 
+@pytest.mark.some(8)
 @pytest.mark.parametrize(("text", "domain", "wanted"), CASES)
 def test_branches_that_meet(text, domain, wanted):
     made = law(text, domain)

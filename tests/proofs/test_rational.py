@@ -70,6 +70,7 @@ def exact(tree):
     return "(" + "+".join(exact(term) for term in tree.terms) + ")"
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("part", PARTS, ids=lambda p: f"{p.function} {p.exponent}")
 def test_each_fact_holds_at_every_point(part):
     with mpmath.workdps(50):
@@ -81,6 +82,7 @@ def test_each_fact_holds_at_every_point(part):
                 assert any(near(op, left(x, y), right(x, y)) for op, left, right in made), (n, x)
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("part", PARTS, ids=lambda p: f"{p.function} {p.exponent}")
 def test_what_relates_two_values_holds_at_all_pairs(part):
     two = (X, Sym("y")), (Sym("a"), Sym("b"))
@@ -114,6 +116,7 @@ def near(op, left, right):
     return left - right <= slack if op == "<=" else right - left <= slack
 
 
+@pytest.mark.some(5)
 @pytest.mark.parametrize("part", PARTS, ids=lambda p: f"{p.function} {p.exponent}")
 def test_the_facts_say_something(part):
     """A wrong value of y, by a tenth, breaks a clause somewhere."""
@@ -198,6 +201,7 @@ sin(x + cos(y/w)); log(1 + x**2)/(1 + exp(-x)); (1 + x**2)**(-3/2)
 """
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize(
     "text", [t.strip() for line in FUNCTIONS.split("\n") for t in line.split(";") if t]
 )

@@ -59,6 +59,7 @@ def comments(text):
     return [before for before, line in pairwise(lines) if line == "(push 1)"]
 
 
+@pytest.mark.some(7)
 @pytest.mark.parametrize("spec", [None, *SPECS], ids=lambda s: s.stem if s else "committed")
 def test_both_solvers_read_the_file_and_every_claim_is_proved(spec):
     text = (COMMITTED / "proofs.smt2").read_text() if spec is None else smt2(report_of(spec), "x")

@@ -84,6 +84,7 @@ REFUTED = {
 }
 
 
+@pytest.mark.some(5)
 @pytest.mark.parametrize(
     ("pairs", "name", "element", "broken", "numbers"), REFUTED.values(), ids=REFUTED
 )

@@ -31,6 +31,7 @@ def verdicts(law, unit):
     return {(row.id, row.element): row.verdict for row in rows}
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("law", "unit"),
     [
@@ -54,6 +55,7 @@ def test_the_slope_at_rest_of_a_root_is_left_open():
     assert verdicts("d*sign(v)*sqrt(abs(v))", "N/(m/s)**(1/2)")["program", ""] is Verdict.OPEN
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize(
     "law",
     [
@@ -75,11 +77,13 @@ def test_a_root_that_is_never_zero_has_a_slope(law):
     assert verdicts(law, "N")["program", ""] is Verdict.PROVED
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("unit", ["N*s/m", "N", "N/(m/s)**(1/3)", "N*(m/s)**(1/2)"])
 def test_another_unit_is_refuted(unit):
     assert verdicts("d*sign(v)*sqrt(abs(v))", unit)["units", "damper"] is Verdict.REFUTED
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("law", ["-d*sign(v)*sqrt(abs(v))", "d*sqrt(abs(v))", "d*sqrt(v)"])
 def test_a_root_law_that_may_give_work_is_not_proved(law):
     assert verdicts(law, "N/(m/s)**(1/2)")["passive", "damper"] is not Verdict.PROVED

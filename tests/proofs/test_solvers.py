@@ -83,6 +83,7 @@ def made(tmp_path):
         one.worker.close()
 
 
+@pytest.mark.some(6)
 @pytest.mark.parametrize("fault", FAULTS.values(), ids=FAULTS)
 def test_a_faulty_solver_proves_nothing_and_the_next_question_works(made, fault):
     fake = made(fault)
@@ -197,6 +198,7 @@ needs_proc = pytest.mark.parametrize(
 )
 
 
+@pytest.mark.some(2)
 @needs_proc
 def test_no_solver_outlives_who_asked(last, stop):
     asking = subprocess.Popen(

@@ -40,6 +40,7 @@ def reasons(*pairs):
     return [row.reason for row in rows]
 
 
+@pytest.mark.some(6)
 @pytest.mark.parametrize("name", shipped())
 def test_shipped_models_are_proved(name):
     (row,) = unit_rows(load(name))
@@ -146,6 +147,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.some(12)
 @pytest.mark.parametrize(("edit", "expected"), [(e, r) for e, *r in FAULTS.values()], ids=FAULTS)
 def test_a_fault_names_place_term_unit_need_and_remedy(edit, expected):
     assert reasons(edit) == expected

@@ -106,6 +106,7 @@ HUGE = (
 )
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("law", HUGE)
 def test_towers_of_exponentials_end(law):
     assert rows(law)["passive", "damper"].verdict is not Verdict.PROVED

@@ -48,6 +48,7 @@ STAGES += [
 ]
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize(
     ("spec", "stages"), STAGES, ids=[f"{Path(spec).stem}-{stages}" for spec, stages in STAGES]
 )

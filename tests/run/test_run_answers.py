@@ -70,6 +70,7 @@ PULSE = np.zeros(2001)
 PULSE[1234] = 1e3
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("method", ["RK45", "Radau", "LSODA"])
 @pytest.mark.parametrize(
     ("signal", "integral"),

@@ -151,6 +151,7 @@ def lossy(model):
     return bool(kinds & STORES) and "thermal_mass" in kinds
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("path", [p for p in SPECS if lossy(load(p))], ids=lambda path: path.stem)
 @pytest.mark.parametrize("h", [1e-6, 1e-4])
 def test_every_network_closes_both_balances_after_a_jump(path, h):

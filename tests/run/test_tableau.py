@@ -21,6 +21,7 @@ def tables(stages, nodes):
     return found
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("stages", [1, 2, 3, 4, 5])
 def test_simplifying_assumptions(stages):
     """B(2s): the weights integrate degree 2s - 1.  C(s): each stage degree s - 1 (Butcher)."""
@@ -33,6 +34,7 @@ def test_simplifying_assumptions(stages):
         assert a @ c ** (k - 1) == pytest.approx(c**k / k, rel=1e-14)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("stages", [1, 2, 3, 4, 5])
 def test_means_are_exact_for_polynomials(stages):
     """int_0^1 (l_i/b_i) X^2 dtau for a path X of degree s needs nodes for degree 3s - 1."""
@@ -117,6 +119,7 @@ def test_printed_numbers_are_those_of_gauss_to_the_last_digit(stages):
 TABLES = Path(__file__).parents[2] / "piezo_sym" / "run" / "engine" / "tables"
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize("name", files())
 def test_the_engine_has_these_numbers(name):
     assert (TABLES / f"{name}.c").read_text(encoding="utf-8") == text(name)

@@ -401,6 +401,7 @@ HOSTILE = {
 }
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_specs_are_refused_soon(whole, name, monkeypatch):
     monkeypatch.setattr(flatten, "MOST_ELEMENTS", 500)

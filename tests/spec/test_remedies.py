@@ -106,6 +106,7 @@ def fault_of(text: str) -> str:
     return wrong[0].reason if wrong else ""
 
 
+@pytest.mark.some(25)
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_the_remedy_of_a_mistake_mends_it(mistake):
     old, new = MISTAKES[mistake]

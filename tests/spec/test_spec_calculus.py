@@ -176,6 +176,7 @@ def test_laws_without_a_simple_integral(text):
     assert antiderivative(read(text), "x") is None
 
 
+@pytest.mark.some(7)
 @pytest.mark.parametrize(
     "text",
     [

@@ -109,6 +109,7 @@ def _hurried(monkeypatch):
     monkeypatch.setattr(process, "PATIENCE", HURRIED)
 
 
+@pytest.mark.some(20)
 @pytest.mark.parametrize("text", [*LAWS.values(), *HOSTILE], ids=lambda text: ascii(text)[:25])
 def test_a_hostile_law_is_answered_at_once(text, tmp_path):
     path = tmp_path / "mine.toml"
@@ -152,6 +153,7 @@ def placed():
             yield pytest.param(LAWS[law], PLACES[place], id=f"{law}-{place}", marks=marks)
 
 
+@pytest.mark.some(2)
 @pytest.mark.usefixtures("_hurried")
 @pytest.mark.parametrize(("law", "place"), list(placed()))
 def test_what_is_accepted_does_not_hang_later(law, place):

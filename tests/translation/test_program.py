@@ -41,6 +41,7 @@ def verdict(known, language, text):
     return found[0].verdict if found else Verdict.PROVED
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize("name", ALL)
 def test_what_is_printed_is_proved(name):
     iphs = iphs_of(name)
@@ -61,6 +62,7 @@ def survivors(name, language, sample=None):
     return alive, counts
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("language", TEXTS)
 @pytest.mark.parametrize("name", MUTATED[:3])
 def test_no_mutant_of_a_sample_is_proved(name, language):
