@@ -29,6 +29,7 @@ def states(frequency):
     )
 
 
+@pytest.mark.long
 def test_there_is_one_jump_and_it_goes_up(found):
     (jump,) = found.jumps
     assert jump.upward
@@ -37,6 +38,7 @@ def test_there_is_one_jump_and_it_goes_up(found):
     assert jump.lands == pytest.approx(3698, rel=0.01)
 
 
+@pytest.mark.long
 def test_steady_states_come_and_go_at_the_jump(found):
     """Three below the fold, one above; independent searches, half a per cent to either side."""
     f = found.jumps[0].frequency
@@ -102,6 +104,7 @@ def test_branches_are_short_to_read(found):
     assert repr(found) == f"Branches(curves: 2, points: {points}, jumps: {jump})"
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("documented", [steady_branches, periodic_steady_state])
 def test_the_example_of_the_help_gives_what_it_says(documented):
     (example,) = doctest.DocTestFinder(recurse=False).find(documented, "help", globs={})

@@ -87,6 +87,7 @@ def test_figure_6_loops_are_wider_and_flatter_with_the_frequency(over_frequency)
     assert all(loop.phase > 0 and loop.area > 0 for loop in over_frequency)
 
 
+@pytest.mark.long
 def test_figure_6_does_not_hold_for_settled_loops():
     """The cool steady state steepens from 10 to 50 Hz; the hot ones move against the voltage."""
     slopes = []
@@ -122,6 +123,7 @@ def test_table_1_couples_nearly_all_energy_and_moves_two_millimetres(stack):
     assert 100 * p.a / p.k == pytest.approx(2e-3)
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(("L", "below", "above"), [(1e-4, 71.2, 71.7), (5e-3, 57.3, 57.8)])
 def test_figure_4_how_far_the_temperature_rises_depends_on_the_inductance(L, below, above):
     """The cool state is there below the fold of the table, and gone above it."""

@@ -89,6 +89,7 @@ def test_the_ledger_is_stacked_by_process(start, prefix):
     assert tops == pytest.approx([float(bank.max()), float((bank + damper).max())])
 
 
+@pytest.mark.long
 def test_many_lanes_are_drawn_as_the_range_they_fill():
     run = actuator(parameters={"hysteron_count": 64, "i_0": [0.02 * n for n in range(64)]})
     axes = panel(plot(run), "phi")
@@ -120,6 +121,7 @@ def test_every_curve_has_a_name_and_a_look_of_its_own():
     assert len(areas) == 22
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("lanes", [2, 8])
 def test_a_legend_covers_no_curve(lanes):
     figure = plot(actuator(parameters={"hysteron_count": lanes}, times=11))

@@ -257,6 +257,7 @@ def test_a_long_run_ends_there():
         assert float(run[name][-1]) == pytest.approx(found.initial[name], abs=1e-4 * size)
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("which", [0, 2], ids=["cool", "hot"])
 def test_another_solver_finds_the_same_orbit(at_50, which):
     state = at_50[which]
@@ -365,6 +366,7 @@ def test_a_wrong_argument_is_one_line(changed, said):
     assert len(str(error.value).splitlines()) == 1
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore:nothing settles")
 def test_constant_inputs_may_lead_to_no_state_of_rest():
     with pytest.raises(RunError, match=r"at 100 Hz: no(thing settles| periodic steady state)"):
@@ -437,6 +439,7 @@ load = { kind = "force_source", at = "tip", input = "F" }
 """
 
 
+@pytest.mark.some(1)
 @pytest.mark.usefixtures("cache")
 @pytest.mark.parametrize("start", [0.0, 2e-3])
 def test_what_every_motion_conserves_stays_as_it_was(start):

@@ -77,6 +77,7 @@ def test_the_machine_tells_where_it_was_measured():
     assert "no_such_package" not in dict(found.versions)
 
 
+@pytest.mark.long
 def test_derivation_is_compared_with_large_banks():
     problem = problem_of(load("piezo_stack"), {}, 0.1)
     assert enlarged(problem.model).elements["hysteron"].count == 10_000

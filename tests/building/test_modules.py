@@ -98,6 +98,7 @@ def test_an_edit_runs_without_generate_and_says_what_is_out_of_date(mine, cache)
     ]
 
 
+@pytest.mark.long
 def test_the_command_that_is_named_mends_it(mine):
     generate(load(mine))
     mine.write_text(mine.read_text().replace("0.004", "0.005"))

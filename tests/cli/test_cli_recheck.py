@@ -6,6 +6,8 @@ import sys
 from collections import Counter
 from xml.etree import ElementTree as ET
 
+import pytest
+
 from piezo_sym import derive, load, verify
 from piezo_sym.proofs import Verdict, proofs_json
 from piezo_sym.spec.source import find, read
@@ -27,6 +29,7 @@ def test_rechecking_confirms_every_row(call):
     assert {"confirmed passive hysteron", "confirmed sigma"} <= {*confirmed}
 
 
+@pytest.mark.long
 def test_a_row_that_is_left_out_or_says_too_much_is_not_confirmed():
     proofs = json.loads(proofs_json(verify(derive(MODEL)), MODEL, ""))
     text = read(find("piezo_stack"))
@@ -105,6 +108,7 @@ def suites(path):
     return {suite.get("name"): suite for suite in ET.parse(path).getroot()}
 
 
+@pytest.mark.long
 def test_junit_has_a_case_a_row(call, unproved, tmp_path):
     path = tmp_path / "proofs.xml"
     answer = call("verify", "piezo_stack", unproved, "--junit", path)

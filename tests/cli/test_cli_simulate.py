@@ -329,6 +329,7 @@ def compiled(folder):
 LONG = ("--duration", "1e5", "-i", "V_in=sine(100,100)")
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("words", [("--step", "1e-5"), ()], ids=["step", "tolerance"])
 def test_a_long_run_stops_within_a_second_of_ctrl_c(words, tmp_path):
     command = [sys.executable, "-m", "piezo_sym", "simulate", "piezo_stack", *LONG, *words]

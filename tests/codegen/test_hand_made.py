@@ -163,6 +163,7 @@ def well(energy):
     )
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("energy", ["k*q**4/4", "k*log(1 + q**2)"])
 def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
     """Newton's method may end at what is no root, and quadrature miss a well within a step."""

@@ -70,6 +70,7 @@ def test_every_edit_fits_once():
             mutant.apply(path.read_text(encoding="utf-8"))
 
 
+@pytest.mark.long
 def test_some_mutants_are_killed_as_recorded():
     assert run(EVERY, *LISTS) == recorded(EVERY, *LISTS)
 

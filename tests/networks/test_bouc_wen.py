@@ -102,6 +102,7 @@ def test_what_to_declare_of_an_exponent_is_said(domain):
     assert row.reason.endswith("; the condition 'n > 0' in [domain] mends it")
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("power", "said"),
     [

@@ -109,6 +109,7 @@ def fill(x, y):
     return area / (np.ptp(x) * np.ptp(y))
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("frequency", [1.0, 20.0])
 def test_loop_of_the_stack_is_that_of_a_measured_one_at_any_rate(frequency):
     drive = {"V_in": lambda t: 150 * np.sin(np.pi * frequency * t) ** 2}

@@ -77,12 +77,12 @@ def test_every_kind_has_a_strategy():
 
 
 def test_what_is_drawn():
-    check_seen(explore(200, features), missing=8)
+    check_seen(explore(100, features), missing=12)
 
 
 def test_networks():
-    derived = [found for found in explore(20, checked) if found]
-    assert len(derived) >= 6  # what is refused, and how often, is seen among those above
+    derived = [found for found in explore(8, checked) if found]
+    assert len(derived) >= 3  # what is refused, and how often, is seen among those above
 
 
 @pytest.mark.long

@@ -144,6 +144,7 @@ def test_rates_are_those_typed_by_hand(iphs, seed):
     assert found == pytest.approx(rates(x, 3.0, 350.0), rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("rtol", [1e-5, 1e-8])
 def test_a_run_is_that_of_scipy_and_its_balances_close(model, rtol):
     run = simulate(model, inputs={"V": sine(20, 2)}, duration=1.0, rtol=rtol)

@@ -101,6 +101,7 @@ def led(t, speeds, name="led", **how):
     return simulate(model(name), inputs={given: (t, speeds)}, duration=t[-1], **how)
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(("name", "size"), [("led", 3000.0), ("charged", 1e3)])
 @settings(max_examples=8)
 @given(
@@ -232,6 +233,7 @@ def test_without_a_limit_there_is_no_force():
     assert np.abs(run.heat_stop.values).max() <= 1e-30
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("steps", [{"step": 1e-3}, {"rtol": 1e-4}], ids=str)
 def test_ten_thousand_stops_run(steps):
     """After a large way they all stand at their limits, first at one, then at the other."""

@@ -93,6 +93,7 @@ def test_a_run_is_that_of_equations_typed_by_hand(folder):
     assert float(abs(ds.energy_residual).max()) < 1e-9
 
 
+@pytest.mark.long
 def test_the_file_of_a_component_belongs_to_the_spec(folder, tmp_path, monkeypatch):
     for path in folder.iterdir():
         shutil.copy(path, tmp_path)
@@ -108,6 +109,7 @@ def test_the_file_of_a_component_belongs_to_the_spec(folder, tmp_path, monkeypat
         assert module_of("two.toml").Parameters().right_a == 9
 
 
+@pytest.mark.long
 def test_the_second_program_reads_a_model_written_out(folder, capfd):
     assert run(["verify", str(folder / "two.toml"), "--recheck", "--json"]) == 0
     said, heard = capfd.readouterr()

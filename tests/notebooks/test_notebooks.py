@@ -17,10 +17,16 @@ ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "notebooks"
 EXECUTE = FOLDER / "execute.py"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
-#: Not executed in the fast tier, where their data have tests of their own: `reproduce` draws the
-#: figures, banks of any size are compared with NumPy, sweeps with single runs, devices and
-#: hysteresis with closed forms.
-LONG = {"04-figures", "05-many-hysterons", "07-sweeps", "09-devices", "10-hysteresis"}
+#: Not executed in the fast tier: what they show has tests of its own, the paper's claims and
+#: figures, banks beside NumPy, sweeps beside single runs, devices and hysteresis beside closed forms.
+LONG = {
+    "04-figures",
+    "05-many-hysterons",
+    "06-paper-and-software",
+    "07-sweeps",
+    "09-devices",
+    "10-hysteresis",
+}
 
 
 def execute(*words, script=EXECUTE):
@@ -117,6 +123,7 @@ def test_a_notebook_is_written_the_same_twice_and_then_checks(folder):
     succeed(folder, "--check", "01")
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("old", "new", "seen"),
     [("two", "three", '-      "three'), ("image/png", "image/x", "image/x")],
@@ -135,6 +142,7 @@ def test_a_changed_output_is_seen(folder, old, new, seen):
     assert f'"{new}' in path.read_text(encoding="utf-8")  # a check writes nothing
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     "source",
     ["import warnings\nwarnings.warn('too old')", "import sys\nsys.stderr.write('odd')", "1/0"],

@@ -54,6 +54,7 @@ def test_one_that_may_be_negative_is_refuted(law):
     assert Verdict.PROVED not in {row.verdict for row in others}
 
 
+@pytest.mark.long
 def test_too_many_kinks_are_open():
     law = " + ".join(f"abs(lam - {n}*lam/T_0*T_0)" for n in range(2, 12))
     assert {row.verdict for row in rows(law)} == {Verdict.OPEN}

@@ -142,6 +142,7 @@ def check(count, seed):
         assert counts[name, "REFUTED"] > count / 60
 
 
+@pytest.mark.long
 def test_no_verdict_on_a_slip_is_wrong():
     check(40, "fast")
 

@@ -182,6 +182,7 @@ def test_a_quotient_has_the_value_of_the_law(tree, values):
     assert (sign > 0) - (sign < 0) == (wanted > 0) - (wanted < 0)
 
 
+@pytest.mark.long
 @steady
 @given(RATIONAL, RATIONAL, st.sampled_from(sorted(OUTCOMES)), VALUES)
 def test_a_cleared_comparison_holds_where_the_comparison_does(left, right, op, values):

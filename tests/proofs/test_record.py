@@ -158,6 +158,7 @@ for spec in sys.argv[1:]:
 """
 
 
+@pytest.mark.long
 def test_the_files_are_the_same_in_every_process():
     specs = ["piezo_stack", *(str(path) for path in SPECS[::8])]
     texts = set()

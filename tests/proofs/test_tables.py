@@ -204,6 +204,7 @@ def _points(domain, seed=0):
             yield at
 
 
+@pytest.mark.long
 @settings(max_examples=15)
 @given(tabled())
 def test_what_is_proved_numbers_do_not_deny(drawn):

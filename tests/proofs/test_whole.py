@@ -197,6 +197,7 @@ def attack(seed):
     return outcome and outcome.verdict
 
 
+@pytest.mark.long
 def test_no_random_law_is_wrongly_decided():
     """Some are proved: a test that decides nothing would pass too."""
     verdicts = [attack(f"law {n}") for n in range(20)]

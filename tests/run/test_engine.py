@@ -189,6 +189,7 @@ print(simulate("piezo_stack", duration=1e-4, times=2, inputs={"V_in": 1.0}).q.va
 """
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("damage", ["cut", "flip"])
 def test_a_damaged_library_does_not_end_python(damage, tmp_path):
     """Its digest is looked at before it is loaded: a page that is missing would end the process."""

@@ -27,6 +27,7 @@ def case_p(request, piezo):
     return simulate(piezo, inputs=drive, duration=0.1, rtol=1e-9, method=request.param, times=20001)
 
 
+@pytest.mark.some(1)
 def test_case_p(case_p):
     for name, (value, scale) in CASE_P.items():
         error = np.max(np.abs(case_p[name].values[-1] - value)) / scale

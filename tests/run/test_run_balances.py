@@ -130,6 +130,7 @@ def test_a_million_steps_close_the_energy_balance(h):
     check_production(found)
 
 
+@pytest.mark.long
 def test_a_million_steps_of_what_nothing_enters():
     """An oscillator alone: what its damper takes, its body has; U stays at 602 J to 4 ulp."""
     model = load(SPECS / "a2_oscillator.toml")

@@ -171,6 +171,7 @@ def test_no_run_leaves_its_arrays(module, compiler, tmp_path):
     assert (done.returncode, done.stdout) == (0, "good\n"), done.stderr
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("compiler", SANITIZING)
 def test_an_array_that_is_left_is_seen(compiler, tmp_path):
     """The test above can fail: with one row too few it does."""

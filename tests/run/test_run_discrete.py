@@ -117,6 +117,7 @@ def test_step_and_rtol_exclude_each_other():
         run(step=1e-5, rtol=1e-6)
 
 
+@pytest.mark.long
 def test_an_input_that_would_take_steps_without_end_is_refused():
     with pytest.raises(RunError, match=r"steps of 1\.25e-301 s, over 10\^12 of them"):
         simulate("piezo_stack", inputs={"V_in": sine(100, 1e300)}, duration=0.1)

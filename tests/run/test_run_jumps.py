@@ -136,6 +136,7 @@ def test_friction_is_as_good_as_asked_for(options, width):
         assert error(FRICTION, rtol, wanted, **given) <= 20
 
 
+@pytest.mark.long
 def test_a_charge_that_follows_at_once_is_right_from_its_start():
     wanted = exact(CIRCUIT, **CHARGE)
     for rtol in RTOLS:

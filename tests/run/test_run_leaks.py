@@ -5,9 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ALONE = Path(__file__).with_name("leaks_alone.py")
 
 
+@pytest.mark.long
 def test_runs_keep_no_memory():
     options = ["-q", "-p", "no:cacheprovider", "--noconftest"]  # with the libraries of this run
     command = [sys.executable, "-m", "pytest", *options, str(ALONE)]

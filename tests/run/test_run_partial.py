@@ -20,6 +20,7 @@ def short_of_300_kelvin(tmp_path_factory):
     return path
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("method", [None, "LSODA"])
 def test_the_error_of_a_run_carries_the_dataset_so_far(short_of_300_kelvin, method):
     model = load(short_of_300_kelvin)
@@ -44,6 +45,7 @@ def test_a_run_that_fails_at_its_start_has_none():
     assert stopped.value.partial is None
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("method", [None, "LSODA"])
 def test_a_run_that_is_interrupted_keeps_what_it_has(method):
     def interrupt(t):

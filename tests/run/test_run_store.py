@@ -23,6 +23,7 @@ def short_windows(monkeypatch):
     monkeypatch.setattr(streaming, "WINDOW", 6 * 9 * 100)
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("options", [{"rtol": 1e-9}, {"step": 1e-5}])
 @pytest.mark.usefixtures("short_windows")
 def test_a_run_in_windows_is_the_run(options, tmp_path):
@@ -102,6 +103,7 @@ def test_a_store_ends_where_the_run_stops(tmp_path):
     assert stopped.value.partial.sizes == kept.sizes
 
 
+@pytest.mark.long
 def test_memory_does_not_grow(tmp_path):
     """Twenty variables of 400,000 samples more would take 64 MB."""
     code = """

@@ -215,6 +215,7 @@ def test_a_spec_is_made_small():
     assert small["domain"]["assume"] == ["b < 1"]
 
 
+@pytest.mark.long
 def test_no_verdict_of_a_small_slice_is_false(prover):
     with within(10):
         record = slice_of(0, prover, specs=2, laws=5)

@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from spec_laws import steady
@@ -90,6 +91,7 @@ def test_letters_inserted(at, letters):
     load_or_one_line(SHIPPED[:at] + letters + SHIPPED[at:])
 
 
+@pytest.mark.long
 @steady
 @given(st.permutations(SHIPPED.split("\n\n")))
 def test_blocks_in_any_order(blocks):

@@ -30,6 +30,7 @@ def run(folder, *words, limit=600):
     return json.loads(done.stdout)
 
 
+@pytest.mark.long
 def test_two_thousand_texts(tmp_path):
     found = run(tmp_path, 1, 1500, 500)
     assert found["faults"] == []

@@ -213,6 +213,7 @@ def peak(runs, duration, reduce):
     return float(done.stdout)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="the unit of ru_maxrss")
 def test_memory_does_not_grow_with_the_runs():
     """2000 trajectories would be 0.4 GiB."""

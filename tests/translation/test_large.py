@@ -33,7 +33,7 @@ def long_chain():
     return examined(chain(24))
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("language", TEXTS)
 def test_a_chain_of_24_is_proved_and_a_mutant_of_it_is_refuted(long_chain, language):
     texts, known = long_chain
@@ -44,6 +44,7 @@ def test_a_chain_of_24_is_proved_and_a_mutant_of_it_is_refuted(long_chain, langu
     assert (row.verdict, "rhs['Q_c11']" in row.reason) == (Verdict.REFUTED, True)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("family", "sizes"), [(chain, (3, 9)), (bundle, (12, 24))])
 def test_work_grows_with_the_text(family, sizes):
     """Work is counted in products of terms and in generators, so that no clock is asked."""

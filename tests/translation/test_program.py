@@ -79,6 +79,7 @@ def test_no_mutant_is_proved(name, language):
     assert alive == []
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("language", TEXTS[:2])
 def test_a_change_of_a_quantity_before_it_is_printed_is_refuted(language):
     iphs = iphs_of("piezo_stack")

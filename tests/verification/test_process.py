@@ -68,6 +68,7 @@ SLOW = {
 }
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("name", SLOW)
 def test_laws_that_once_hung_end(name):
     parameters = 'v_1 = { value = 1.0, unit = "m/s" }\nF_1 = { value = 1.0, unit = "N" }'
