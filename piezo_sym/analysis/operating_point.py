@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray, calling, known_keys, number
+from piezo_sym.run.guard import check_limits
 from piezo_sym.run.module import GeneratedModule, by_name, checked, row_name
 from piezo_sym.run.parameters import (
     LaneValue,
@@ -105,6 +106,7 @@ def operating_point(
     p = read_parameters(checked(module), parameters)
     u = read_constants(module, inputs)
     start = read_initial(module, p, u, initial)
+    check_limits(module, p, start, u)
     held = _held(module, p, start, temperatures)
     free = np.setdiff1d(np.arange(start.size), list(held.values()))
     search = RestSearch(module, p, u, free)

@@ -7,6 +7,7 @@ is > 0 if it is strict, >= 0 otherwise; nan holds nowhere.
 
 import re
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -39,7 +40,7 @@ def check_start(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> No
             raise domain_error(system, t, x, u)
         if not np.all(system.finite(x, u)):
             raise rate_error(system, t, x, u)
-        check_limits(system, x, slack)
+        check_limits(system.module, system.parameters, x, u, slack)
     except ArithmeticError as cause:
         what = f"the state at t = {t:g} s cannot be evaluated: {cause}"
         raise RunError(what, place(system), remedy="check the parameters") from cause
@@ -55,12 +56,13 @@ def slack_of(initial: object, parameters: object) -> float:
     return np.inf if hasattr(initial, "data_vars") and not parameters else SLACK
 
 
-def check_limits(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> None:
-    """Raise `RunError` if a stop would start beyond its limit, from the state x (n,)."""
-    module, p, stops = system.module, system.parameters, limited(system.module)
+def check_limits(
+    module: GeneratedModule, p: Any, x: FloatArray, u: FloatArray, slack: float = SLACK
+) -> None:
+    """Raise `RunError` if a stop would start beyond its limit, from x (n,) under inputs u (m,)."""
+    stops = limited(module)
     if not stops or slack == np.inf:
         return
-    u = system.inputs.segments[0].at(system.inputs.start)
     with np.errstate(all="ignore"):
         found = by_name(module.ELEMENTS, p, module.elements(x, u, p))
     for stop in stops:
@@ -72,7 +74,7 @@ def check_limits(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> N
             what = f"stop '{stop}' starts beyond its limit{lane}: its effort is"
             what += f" {effort.flat[at]:.6g}, its limit {limit.flat[at]:.6g}"
             remedy = "change the initial state or the parameters of the stop"
-            raise RunError(what, place(system), "abs(effort) <= limit", remedy)
+            raise RunError(what, f"model '{module.NAME}'", "abs(effort) <= limit", remedy)
 
 
 def crossing(

@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from piezo_sym import PiezoError, Stepper, simulate, sine, sweep
+from piezo_sym import (
+    PiezoError,
+    Stepper,
+    operating_point,
+    periodic_steady_state,
+    simulate,
+    sine,
+    sweep,
+)
 from piezo_sym.errors import RunError
 from piezo_sym.spec.load import parse
 from piezo_sym.sweeps import SweepWarning
@@ -85,3 +93,11 @@ def test_the_limit_is_among_the_quantities_of_a_stop():
     run = simulate(parse(BANK), duration=0.1, outputs=["stop.limit"])
     assert run["stop.limit"].values[-1].tolist() == [1.0, 3.0]
     assert run["stop.limit"].units == "N"
+
+
+@pytest.mark.parametrize("given", BEYOND)
+def test_searches_begin_within_the_limits_too(given):
+    with pytest.raises(RunError, match="stop 'stop' starts beyond its limit"):
+        operating_point(parse(SPEC), temperatures={"body": 300.0}, **given)
+    with pytest.raises(RunError, match="stop 'stop' starts beyond its limit"):
+        periodic_steady_state(parse(SPEC), inputs={"F": sine(0.1, 2.0)}, frequency=2.0, **given)
