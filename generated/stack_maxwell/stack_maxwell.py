@@ -505,13 +505,13 @@ def elements(x, u, p_, /):
     rate_z = v_mass - slip_slips
     rate_S = (heat_leads + heat_slips + heat_damper)/T + lam*(T_e/T - 1)
     # result
-    row_slips_effort = 24 + slips_count
-    row_slips_flow = row_slips_effort + slips_count
-    row_slips_power = row_slips_flow + slips_count
-    row_slips_energy = row_slips_power + slips_count
-    row_slips_heat = row_slips_energy + slips_count
-    row_slips_limit = row_slips_heat + slips_count
-    out = np.empty((14 + row_slips_limit, *x.shape[1:]))
+    end_slips_effort = 24 + slips_count
+    end_slips_flow = end_slips_effort + slips_count
+    end_slips_power = end_slips_flow + slips_count
+    end_slips_energy = end_slips_power + slips_count
+    end_slips_heat = end_slips_energy + slips_count
+    end_slips_limit = end_slips_heat + slips_count
+    out = np.empty((14 + end_slips_limit, *x.shape[1:]))
     out[0] = V_in
     out[1] = -i_leads
     out[2] = -i_leads*V_in
@@ -536,26 +536,26 @@ def elements(x, u, p_, /):
     out[21] = v_mass
     out[22] = F_spring*v_mass
     out[23] = k*q**2/2
-    out[24 : row_slips_effort] = F_slips
-    out[row_slips_effort : row_slips_flow] = rate_z + slip_slips
-    out[row_slips_flow : row_slips_power] = F_slips*(rate_z + slip_slips)
-    out[row_slips_power : row_slips_energy] = k_s*z**2/2
-    out[row_slips_energy : row_slips_heat] = slip_slips*F_slips
-    out[row_slips_heat : row_slips_limit] = k_s*r
-    out[row_slips_limit] = F_damper
-    out[1 + row_slips_limit] = v_mass
-    out[2 + row_slips_limit] = F_damper*v_mass
-    out[3 + row_slips_limit] = F_damper*v_mass
-    out[4 + row_slips_limit] = -F_ext
-    out[5 + row_slips_limit] = v_mass
-    out[6 + row_slips_limit] = -v_mass*F_ext
-    out[7 + row_slips_limit] = T
-    out[8 + row_slips_limit] = rate_S
-    out[9 + row_slips_limit] = T*rate_S
-    out[10 + row_slips_limit] = T_0*c_0*np.exp(S/c_0)
-    out[11 + row_slips_limit] = T
-    out[12 + row_slips_limit] = -lam*(T_e/T - 1)
-    out[13 + row_slips_limit] = -lam*(T_e - T)
+    out[24 : end_slips_effort] = F_slips
+    out[end_slips_effort : end_slips_flow] = rate_z + slip_slips
+    out[end_slips_flow : end_slips_power] = F_slips*(rate_z + slip_slips)
+    out[end_slips_power : end_slips_energy] = k_s*z**2/2
+    out[end_slips_energy : end_slips_heat] = slip_slips*F_slips
+    out[end_slips_heat : end_slips_limit] = k_s*r
+    out[end_slips_limit] = F_damper
+    out[1 + end_slips_limit] = v_mass
+    out[2 + end_slips_limit] = F_damper*v_mass
+    out[3 + end_slips_limit] = F_damper*v_mass
+    out[4 + end_slips_limit] = -F_ext
+    out[5 + end_slips_limit] = v_mass
+    out[6 + end_slips_limit] = -v_mass*F_ext
+    out[7 + end_slips_limit] = T
+    out[8 + end_slips_limit] = rate_S
+    out[9 + end_slips_limit] = T*rate_S
+    out[10 + end_slips_limit] = T_0*c_0*np.exp(S/c_0)
+    out[11 + end_slips_limit] = T
+    out[12 + end_slips_limit] = -lam*(T_e/T - 1)
+    out[13 + end_slips_limit] = -lam*(T_e - T)
     return out
 
 

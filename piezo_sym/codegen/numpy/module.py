@@ -210,7 +210,8 @@ class _Printer:
         """Return the places of a function's rows."""
         slots = [row.slot for row in function.rows]
         same = slots == self.states.slots
-        return self.states if same else places(slots, "row", self.program.taken)
+        taken = [*self.program.taken, *self.states.ends.values()]
+        return self.states if same else places(slots, "end", taken)
 
     def _array(self, function: ModuleFunction, rows: Places) -> str:
         if function.name == "initial_state":
