@@ -53,7 +53,9 @@ class Raised(sp.Function):  # type: ignore[misc]
 
     @classmethod
     def eval(cls, x: sp.Expr, w: sp.Expr) -> sp.Expr | None:
-        """Return the power of numbers; none where it has no value."""
+        """Return the power of numbers, and of zero; none where it has no value."""
+        if x.is_zero and w.is_positive:
+            return sp.S.Zero
         if not (x.is_number and w.is_number):
             return None
         return sp.Pow(x, w) if x.is_nonnegative and w.is_positive else sp.nan

@@ -1,20 +1,31 @@
 """Energies of storage elements from their co-state laws, and co-states from energies.
 
-Input: a tree and a name.  Output: a tree, or None where an integral has no simple form.  With F_1
-and F_2 the antiderivatives of two branches that meet at the edge e, that of both is F_1 on one side
-and F_2 + F_1(e) - F_2(e) on the other, which is continuous.
+Input: a tree and a name.  Output: a tree, or None where an integral has no simple form.  Where two
+branches meet at the edge e, one of the antiderivatives has a constant added, so that both have one
+value there.  Where rules give none, the variable is the distance from the edge, which is positive
+on both sides: the logarithms and roots of an integral then are of what is positive.
 """
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import reduce
 from itertools import islice
 from math import prod
+from typing import final
 
-from piezo_sym.expressions.calculus import add, compared, derivative, div, inserted, mul, neg
-from piezo_sym.expressions.exact_eval import OUTCOMES
+from piezo_sym.expressions.calculus import (
+    add,
+    compared,
+    derivative,
+    div,
+    inserted,
+    mul,
+    neg,
+)
 from piezo_sym.expressions.integrals import MAX_PARTS, NoFormError, by_rules, divided, slope_of
 from piezo_sym.expressions.reflection import reflected
+from piezo_sym.expressions.tidying import collected, settled, tidied
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
@@ -42,14 +53,14 @@ from piezo_sym.expressions.tree import (
 MOST_FACTORS = 8
 #: Of more pieces, or pieces of more than MAX_PARTS, no energy is written: it is asked for.
 MOST_PIECES = 128
-Otherwise = Callable[[Expr, str], Expr | None]
+Otherwise = Callable[[Expr, str, frozenset[str]], Expr | None]
 
 
 def antiderivative(
     node: Expr,
     name: str,
-    otherwise: Otherwise = lambda *_: None,
-    positive: Collection[str] = (),
+    otherwise: Otherwise | None = None,
+    positive: frozenset[str] = frozenset(),
 ) -> Expr | None:
     """Return an antiderivative of `node` by `name`, or None where there is none of a simple form.
 
@@ -57,45 +68,30 @@ def antiderivative(
 
     Parameters
     ----------
-    otherwise : is asked for those of smooth branches of other forms.
+    otherwise : is asked for those of smooth branches of other forms, with the names that are
+        positive there.
     positive : names that are; they decide how some edges are ordered.
     """
     with suppress(NoFormError):
         return by_rules(node, name)
-    if isinstance(node, Add):
-        parts = [antiderivative(term, name, positive=positive) for term in node.terms]
-        known = [part for part in parts if part is not None]
-        if len(known) == len(parts):
-            return add(*known)
     plain = compared(node)
     condition = first_choice(plain)
+    if isinstance(node, Add) and (condition or not otherwise):
+        found = [antiderivative(term, name, otherwise, positive) for term in _apart(node)]
+        known = [part for part in found if part is not None]
+        if len(known) == len(found):
+            return add(*known)
     if condition is None:
-        return otherwise(node, name)
+        return otherwise(node, name, positive) if otherwise else None
     return _by_branches(plain, condition, name, otherwise, positive)
 
 
-def of_odd(
-    node: Expr, name: str, otherwise: Otherwise, positive: Collection[str] = ()
-) -> Expr | None:
-    """Return an antiderivative of what is odd in `name`, and of whose parts none jumps; or None.
-
-    It is a function of the magnitude, if the law is smooth on each side of zero.
-
-    Parameters
-    ----------
-    otherwise : is asked for that of other forms, where `name` is positive.
-    """
-    try:
-        odd = reflected(node, name) == neg(inserted(node, {}))
-    except ZeroDivisionError:
-        return None
-    above, plain = {*positive, name}, compared(node)
-    side = _settled(plain, above)
-    jumps = any(isinstance(part, Call) and part.function == "sign" for part in walk(node))
-    if not odd or jumps or side == plain or first_choice(side) is not None:
-        return None
-    found = antiderivative(side, name, otherwise, above)
-    return found and inserted(found, {name: Call("abs", (Sym(name),))})
+def _apart(node: Add) -> Iterator[Expr]:
+    """Yield the terms of a sum that choose, and what is left of it."""
+    smooth = tuple(term for term in node.terms if first_choice(compared(term)) is None)
+    yield from (term for term in node.terms if term not in smooth)
+    if smooth:
+        yield add(*smooth)
 
 
 def slope(energy: Expr, name: str) -> Expr:
@@ -113,24 +109,116 @@ def slope(energy: Expr, name: str) -> Expr:
 
 
 def _by_branches(
-    node: Expr, condition: Cmp, name: str, otherwise: Otherwise, positive: Collection[str]
+    node: Expr,
+    condition: Cmp,
+    name: str,
+    otherwise: Otherwise | None,
+    positive: frozenset[str],
 ) -> Expr | None:
     """Return the antiderivative of a choice from those of what it chooses between."""
     if sum(1 for _ in walk(node)) > MAX_PARTS or _pieces(node) > MOST_PIECES:
         return None
-    parts = (decided(node, {condition: holds}) for holds in (True, False))
-    then, other = (antiderivative(part, name, otherwise, positive) for part in parts)
-    if then is None or other is None or _is_long(then) or _is_long(other):
-        return None
-    if name not in names(condition):
-        return If(then, condition, other)
-    difference = add(condition.left, neg(condition.right))
+    difference = collected(condition.left, neg(condition.right))
+    sides = tuple(decided(node, {condition: holds}) for holds in (True, False))
+    if name not in names(difference):
+        found = _each(sides, name, otherwise, positive)
+        return If(found[0], condition, found[1]) if found else None
     slope = slope_of(difference, name)
     if slope is None:
         return None
-    edge = {name: divided(neg(inserted(difference, {name: ZERO})), slope)}
-    shift = add(*(_settled(inserted(part, edge), positive) for part in (then, neg(other))))
-    return If(then, condition, add(other, shift))
+    edge = _Edge(condition, difference, slope, name, sides, positive)
+    with suppress(ZeroDivisionError):
+        return edge.odd(otherwise) or edge.joined(otherwise)
+    return None
+
+
+def _each(
+    parts: Iterable[Expr], name: str, otherwise: Otherwise | None, positive: frozenset[str]
+) -> tuple[Expr, ...]:
+    """Return the antiderivative of each of some trees; nothing if one has none, or a long one."""
+    found: list[Expr] = []
+    for part in parts:
+        own = antiderivative(part, name, otherwise, positive)
+        if own is None or _is_long(own):
+            return ()
+        found.append(own)
+    return tuple(found)
+
+
+@final
+@dataclass(frozen=True)
+class _Edge:
+    """Where a comparison that is affine in `name` turns: where `difference` of its sides is zero.
+
+    `slope` is that of the difference, and `sides` the law where the comparison holds, and else.
+    """
+
+    condition: Cmp
+    difference: Expr
+    slope: Expr
+    name: str
+    sides: tuple[Expr, ...]
+    positive: frozenset[str]
+
+    def odd(self, otherwise: Otherwise | None) -> Expr | None:
+        """Return the antiderivative of what is odd about the edge: one of the distance from it."""
+        above, below = self._outward()
+        if above != below:
+            return None
+        found = _each((above,), self.name, otherwise, self.positive | {self.name})
+        return self._at(found[0], Call("abs", (self.difference,))) if found else None
+
+    def joined(self, otherwise: Otherwise | None) -> Expr | None:
+        """Return the antiderivative by those of the sides, by rules in the name itself.
+
+        Or else in the distance from the edge, where `otherwise` may be asked.
+        """
+        found = _each(self.sides, self.name, None, self.positive)
+        if not found and otherwise:
+            near = self.positive | {self.name}
+            found = _each(self._outward(), self.name, otherwise, near)
+            ways = self.difference, collected(neg(self.difference))
+            found = tuple(self._at(*pair) for pair in zip(found, ways, strict=False))
+            found = found if self._rises else found[::-1]
+        if not found:
+            return None
+        at = {self.name: self._place}
+        then, other = (tidied(settled(inserted(part, at), self.positive)) for part in found)
+        shift = ZERO if then == other else add(then, neg(other))
+        return If(found[0], self.condition, add(found[1], shift))
+
+    @property
+    def _rises(self) -> bool:
+        """Whether the comparison holds where the difference is positive."""
+        return self.condition.op in {">", ">="}
+
+    @property
+    def _place(self) -> Expr:
+        """The value of the name at the edge."""
+        core = self.difference
+        while isinstance(core, Div) and self.name not in names(core.right):
+            core = core.left
+        return divided(neg(inserted(core, {self.name: ZERO})), derivative(core, self.name))
+
+    def _at(self, found: Expr, distance: Expr) -> Expr:
+        """Return an antiderivative by the distance as one by the name."""
+        return divided(tidied(inserted(found, {self.name: distance})), self.slope)
+
+    def _outward(self) -> tuple[Expr, Expr]:
+        """Return the law above the edge, and minus that below, of the distance from the edge."""
+        above, below = map(self._shifted, self.sides if self._rises else self.sides[::-1])
+        turned = neg(reflected(inserted(below, {}), self.name))
+        near = self.positive | {self.name}
+        one, other = (settled(side, near) for side in (inserted(above, {}), turned))
+        return inserted(one, {}), inserted(other, {})
+
+    def _shifted(self, node: Expr) -> Expr:
+        """Return a law of the difference, which has the same name."""
+        slope = slope_of(node, self.name)
+        if slope is None:
+            return rebuild(node, self._shifted)
+        ratio = ONE if slope == self.slope else divided(slope, self.slope)
+        return collected(mul(ratio, Sym(self.name)), inserted(node, {self.name: self._place}))
 
 
 def _pieces(node: Node) -> int:
@@ -142,38 +230,6 @@ def _pieces(node: Node) -> int:
 
 def _is_long(node: Node) -> bool:
     return next(islice(walk(node), MAX_PARTS, None), None) is not None
-
-
-def _settled(node: Expr, positive: Collection[str]) -> Expr:
-    """Return a tree without choices by comparisons that are decided whatever its names are."""
-    inner = rebuild(node, lambda part: _settled(part, positive))
-    match inner:
-        case If(then, Cmp(op, left, right), other):
-            sign = _sign(add(left, neg(right)), positive)
-            if sign is not None:
-                return then if OUTCOMES[op](sign) else other
-        case Pow(Neg(arg), exponent) if exponent % 2 == 0:
-            return Pow(arg, exponent)
-    return inner
-
-
-def _sign(node: Expr, positive: Collection[str]) -> int | None:
-    """Return the sign of a tree, if it is the same for all values of its names."""
-    match node:
-        case Num(value):
-            return (value > 0) - (value < 0)
-        case Sym(name):
-            return 1 if name in positive else None
-        case Neg(arg):
-            inner = _sign(arg, positive)
-            return None if inner is None else -inner
-        case Mul(left, right) | Div(left, right):
-            one, two = _sign(left, positive), _sign(right, positive)
-            return None if one is None or two is None else one * two
-        case Add(terms):
-            signs = {_sign(term, positive) for term in terms}
-            return signs.pop() if len(signs) == 1 else None
-    return None
 
 
 def without_common_factors(node: Expr, name: str) -> Expr:

@@ -4,6 +4,7 @@ Input: a tree and a name.  Output: a tree, or a `NoFormError` where there is non
 """
 
 from collections.abc import Iterable
+from contextlib import suppress
 from fractions import Fraction
 from functools import reduce
 from math import comb
@@ -73,13 +74,55 @@ def by_rules(node: Expr, name: str) -> Expr:
         case Div(left, Div(top, bottom)) if name not in names(top):  # phi/(L/(1 + phi**2))
             return by_rules(div(mul(left, bottom), top), name)
         case Call(function, (arg, *rest)) if RECORDS[function].integral:
-            arg, *rest = (*rest, arg) if rest and name not in names(arg) else (arg, *rest)
+            if function in {"min", "max"} and name not in names(arg):
+                arg, *rest = (*rest, arg)
             slope = None if any(name in names(w) for w in rest) else slope_of(arg, name)
             if slope is None:
                 raise NoFormError
             whole = rule(RECORDS[function].integral, arg, rest[0] if rest else ZERO, node)
             return divided(whole, slope)
-    return _power_rule(node, name)
+    with suppress(NoFormError):
+        return _power_rule(node, name)
+    degree, raised = _degree(node, name)
+    if degree < -1 or (degree == -1 and not raised):
+        raise NoFormError
+    return div(mul(Sym(name), node), add(*raised, Num(degree + 1)))
+
+
+def _degree(node: Expr, name: str) -> tuple[Fraction, tuple[Expr, ...]]:
+    """Return the n of a product c*x**n, x > 0: a number, and what exponents w > 0 add to it.
+
+    Raises
+    ------
+    NoFormError
+        If it is no such product.
+    """
+    if name not in names(node):
+        return Fraction(0), ()
+    match node:
+        case Sym():
+            return Fraction(1), ()
+        case Neg(arg):
+            return _degree(arg, name)
+        case Mul(left, right):
+            (one, more), (two, others) = _degree(left, name), _degree(right, name)
+            return one + two, more + others
+        case Div(left, right):
+            (one, more), (two, others) = _degree(left, name), _degree(right, name)
+            if not others:
+                return one - two, more
+        case Pow(base, exponent):
+            one, more = _degree(base, name)
+            if not more:
+                return one * exponent, ()
+        case Call(function, (arg, *rest)) if RECORDS[function].power or function == "pow":
+            one, more = _degree(arg, name)
+            if more or any(name in names(w) for w in rest):
+                raise NoFormError
+            if function == "pow":
+                return Fraction(0), (mul(Num(one), rest[0]),)
+            return one * (RECORDS[function].power or 1), ()
+    raise NoFormError
 
 
 def _power_rule(node: Expr, name: str) -> Expr:

@@ -6,7 +6,7 @@ each name the expression behind it, stated once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import final
 
@@ -16,7 +16,7 @@ from piezo_sym.algebra.integrals import integral
 from piezo_sym.algebra.lanes import vector
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError, SpecError, quote, with_article
-from piezo_sym.expressions.energies import antiderivative, of_odd
+from piezo_sym.expressions.energies import antiderivative
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Expr, Sym
 from piezo_sym.iphs.system import System
@@ -100,11 +100,13 @@ class Energy:
     law : a function of states and parameters.
     rows : the states that it is of, by their place among all.
     bank : whose lanes have such an energy each, or None.
+    found : whether it was found for a law, and no spec gives it.
     """
 
     law: Expr
     rows: tuple[int, ...]
     bank: str | None
+    found: bool
 
 
 def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
@@ -119,24 +121,19 @@ def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
     positive = frozenset(
         c.left.name for c in above if c.op == ">" and c.right == ZERO and isinstance(c.left, Sym)
     )
-    rows: dict[tuple[Expr, str | None], tuple[int, ...]] = {}
+    rows: dict[tuple[Expr, str | None, bool], tuple[int, ...]] = {}
     for n, (placed, port) in enumerate(circuit.of(Storage, Body)):
-        key = port.energy or _integral(placed.element, port, positive), placed.bank
+        law = port.energy or _integral(placed.element, port, positive)
+        key = law, placed.bank, port.energy is None
         rows[key] = (*rows.get(key, ()), n)
-    return tuple(Energy(law, found, bank) for (law, bank), found in rows.items())
+    return tuple(Energy(law, own, bank, found) for (law, bank, found), own in rows.items())
 
 
 def _integral(element: str, port: Storage | Body, positive: frozenset[str]) -> Expr:
     """Return the integral of a co-state law by its state; `positive` names are > 0."""
     law, state = port.law, port.state
 
-    def asked(above: frozenset[str]) -> Callable[[Expr, str], Expr | None]:
-        return lambda smooth, name: integral(smooth, name, above)
-
-    energy = antiderivative(law, state, positive=positive)
-    if energy is None:
-        energy = of_odd(law, state, asked(positive | {state}), positive)
-    energy = energy or antiderivative(law, state, asked(positive), positive)
+    energy = antiderivative(law, state, integral, positive)
     if energy is None:
         what = f"no integral of the law {quote(spell(port.law))} by {port.state} is found"
         expected = "one of the functions of laws, found by SymPy in 5 s"

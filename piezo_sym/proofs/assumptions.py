@@ -39,6 +39,7 @@ class Law:
         is not known.
     written : what the spec writes in its place, where the network turns a law round, or joins it.
     rate : of a slip, the letter of the rate that drives it.
+    found : whether it is an energy that no spec gives.
     """
 
     element: str
@@ -49,6 +50,7 @@ class Law:
     ties: tuple[Cmp | None, ...] = ()
     written: tuple[Expr, ...] = ()
     rate: str = ""
+    found: bool = False
 
     @property
     def of_element(self) -> str:

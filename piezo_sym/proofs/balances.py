@@ -8,6 +8,7 @@ sums over lanes: zero proves it for every state, input, parameter and every r.
 from __future__ import annotations
 
 from collections.abc import Container, Iterator
+from dataclasses import replace
 
 import sympy as sp
 
@@ -22,7 +23,7 @@ from piezo_sym.proofs.assumptions import Assumptions, Law
 from piezo_sym.proofs.branches import TooManyBranchesError, branches, parts
 from piezo_sym.proofs.continuity import unbroken
 from piezo_sym.proofs.laws import valued
-from piezo_sym.proofs.obligations import Obligation, Question, Residual
+from piezo_sym.proofs.obligations import NEVER, Obligation, Question, Residual
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
@@ -33,9 +34,6 @@ from piezo_sym.spec.elements.ports import (
     Storage,
 )
 from piezo_sym.spec.tables import conditions, greater
-
-#: What does not hold where a comparison of the same sides does.
-_EXCLUDED = {"<": (">", ">="), "<=": (">",)}
 
 
 def skew(iphs: IPHS) -> Obligation:
@@ -64,9 +62,9 @@ def energy(iphs: IPHS, assumptions: Assumptions) -> Obligation:
     """First law: U does not jump, dU/dx is the co-states, and dU/dt is the power put in."""
     system = iphs.system
     balance = (system.E.T @ system.rhs - system.y.T @ system.u)[0, 0]
-    found = (*_gradient(iphs), Residual("dU/dt - y^T u", balance))
+    found = (*_gradient(iphs, assumptions), Residual("dU/dt - y^T u", balance))
     made = Obligation("energy", "", "dU/dt = y^T u", r"\dot U = y^\top u", residuals=found)
-    laws = [Law("", "U", energy.law) for energy in iphs.energies]
+    laws = [Law("", "U", energy.law, found=energy.found) for energy in iphs.energies]
     return made.asking(lambda: (q for law in laws for q in unbroken(law, assumptions)), "an energy")
 
 
@@ -164,42 +162,44 @@ def _cooling(iphs: IPHS, assumptions: Assumptions) -> Iterator[Question]:
         yield assumptions.question(f"{port.input} > 0", warm)
 
 
-def _gradient(iphs: IPHS) -> Iterator[Residual]:
+def _gradient(iphs: IPHS, assumptions: Assumptions) -> Iterator[Residual]:
     """Yield dU/dx minus the co-state, for each state."""
-    stored = [(names(e.law), e.law, iphs.symbols.law(e.law, {})) for e in iphs.energies]
+    stored = [(e, iphs.symbols.law(e.law, {})) for e in iphs.energies]
     stores = iphs.circuit.of(Storage, Body)
     for (_, port), (_, costate) in zip(stores, iphs.costates, strict=True):
         state = iphs.symbols[port.state]
-        own = [(tree, law) for used, tree, law in stored if port.state in used]
+        own = [(energy, law) for energy, law in stored if port.state in names(energy.law)]
         difference = sp.Add(*(sp.diff(law, state) for _, law in own)) - costate
-        residual = sp.expand(sp.together(difference))
-        rise = add(*(slope(tree, port.state) for tree, _ in own))
-        if residual != 0 and _is_law(iphs, rise, port.law, port.state):
-            residual = sp.S.Zero
-        yield Residual(f"dU/d{port.state}", residual)
+        residual, empty = sp.expand(sp.together(difference)), tuple[Question, ...]()
+        rise = add(*(slope(energy.law, port.state) for energy, _ in own))
+        if residual != 0:
+            try:
+                empty = tuple(_unlike(iphs, rise, port.law, port.state, assumptions))
+                residual = residual if empty else sp.S.Zero
+            except TooManyBranchesError:
+                pass
+        found = any(energy.found for energy, _ in own)
+        yield Residual(f"dU/d{port.state}", residual, empty, found)
 
 
-def _is_law(iphs: IPHS, slope: Expr, law: Expr, state: str) -> bool:
-    """Return whether an energy's slope is shown to be a co-state law, wherever both have a value.
+def _unlike(
+    iphs: IPHS, slope: Expr, law: Expr, state: str, assumptions: Assumptions
+) -> Iterator[Question]:
+    """Yield for each branch on which an energy's slope is not a co-state law if it is ever taken.
 
-    On a branch that is an edge, a = b, they are compared there: a slope of one side is as good as
-    that of the other, for rows ``continuous`` say that neither energy nor law jumps.
+    Both have a value there.  On a branch that is an edge, a = b, they are compared there: a slope
+    of one side is as good as that of the other, for rows ``continuous`` say that neither energy nor
+    law jumps.
     """
     known = tuple(condition.tree for condition in conditions(iphs.model))
-    try:
-        found = branches(Call("together", (slope, law)), known)
-    except TooManyBranchesError:
-        return False
     positive = {c.left for c in map(greater, known) if c.op == ">" and c.right == ZERO}
-    for branch in found:
+    for branch in branches(Call("together", (slope, law)), known):
         where = tuple(_undivided(condition, positive) for condition in branch.conditions)
-        if _is_empty(where):
-            continue
         left, right = (iphs.symbols.law(part, {}) for part in parts(branch))
         at = dict(_edges(iphs, where, iphs.symbols[state]))
         if not vanishes((left - right).xreplace(at)):
-            return False
-    return True
+            asked = assumptions.question(f"dU/d{state} is the co-state", NEVER)
+            yield replace(asked, where=(*known, *branch.conditions), branch=branch.conditions)
 
 
 def _undivided(condition: Cmp, positive: Container[Expr]) -> Cmp:
@@ -215,12 +215,6 @@ def _undivided(condition: Cmp, positive: Container[Expr]) -> Cmp:
 
     left = plain(condition.left) if condition.right == ZERO else condition.left
     return Cmp(condition.op, left, condition.right)
-
-
-def _is_empty(where: tuple[Cmp, ...]) -> bool:
-    """Return whether two comparisons of the same sides exclude each other."""
-    given = {(c.left, c.right, c.op) for c in where}
-    return any((c.left, c.right, op) in given for c in where for op in _EXCLUDED.get(c.op, ""))
 
 
 def _edges(

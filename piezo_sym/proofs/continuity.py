@@ -98,9 +98,10 @@ def unbroken(law: Law, assumptions: Assumptions) -> Iterator[Question]:
     for one, other in combinations(found, 2):
         if one.value != other.value and not _apart(one, other, assumptions):
             meeting = Meeting(tree, (one, other), assumptions.where, assumptions.fixed)
-            yield from _meeting(meeting, assumptions)
+            yield from (replace(q, found=law.found) for q in _meeting(meeting, assumptions))
     if len(found) > 1:
-        yield assumptions.question(_statement(law), Cmp("=", law.tree, law.tree)).covered(found)
+        asked = assumptions.question(_statement(law), Cmp("=", law.tree, law.tree))
+        yield replace(asked.covered(found), found=law.found)
 
 
 def _edges(law: Law, assumptions: Assumptions) -> list[Cmp]:

@@ -60,7 +60,7 @@ def _energies(iphs: IPHS) -> Iterator[tuple[Placed, Law]]:
         placed, _ = stores[energy.rows[0]]
         slopes = {claim for n in energy.rows for claim in _claims(stores[n][1].law)}
         if choices(with_choices(energy.law)) or not slopes.issuperset(_claims(energy.law)):
-            yield placed, Law(placed.element, f"U_{placed.element}", energy.law)
+            yield placed, Law(placed.element, f"U_{placed.element}", energy.law, found=energy.found)
 
 
 def _claims(law: Expr) -> Iterator[Cmp]:
@@ -106,7 +106,7 @@ def welldef(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | Non
 
     def questions() -> Iterator[Question]:
         for law in laws:
-            yield from valued(law.tree, about)
+            yield from (replace(q, found=law.found) for q in valued(law.tree, about))
         for written in (written for law in laws for written in law.written):
             order = dict.fromkeys((*about.order, *names(written)))
             yield from valued(written, replace(about, order=tuple(order)))

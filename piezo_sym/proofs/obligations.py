@@ -33,15 +33,6 @@ NEVER = Cmp("<", ONE, ZERO)
 
 @final
 @dataclass(frozen=True)
-class Residual:
-    """An expression that a property says is zero, and the name of its place."""
-
-    place: str
-    expr: sp.Expr
-
-
-@final
-@dataclass(frozen=True)
 class Meeting:
     """Two branches that must agree where they meet; `fixed` names do not change in a run."""
 
@@ -70,6 +61,7 @@ class Question:
         needs what binds the names of the claim.
     split : whether the claim is asked on each of its branches.
     witness : whether numbers that break the claim are wanted, as those of a counterexample are.
+    found : whether it is about an energy that no spec gives: what breaks that refutes no spec.
     """
 
     label: str
@@ -83,6 +75,7 @@ class Question:
     whole: bool = False
     split: bool = True
     witness: bool = False
+    found: bool = False
 
     @cached_property
     def kept(self) -> tuple[Cmp, ...]:
@@ -160,6 +153,23 @@ class Question:
             yield from names(self.meeting.law)
         if self.law and self.whole:
             yield from names(self.law)
+
+
+@final
+@dataclass(frozen=True)
+class Residual:
+    """An expression that a property says is zero, and the name of its place.
+
+    Attributes
+    ----------
+    empty : questions whether branches are taken nowhere; on all others it is zero.
+    found : whether it is about an energy that no spec gives.
+    """
+
+    place: str
+    expr: sp.Expr
+    empty: tuple[Question, ...] = ()
+    found: bool = False
 
 
 def _settled(condition: Cmp, known: tuple[Cmp, ...]) -> Cmp:

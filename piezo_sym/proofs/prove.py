@@ -37,6 +37,8 @@ TRIES = (1, 2, 3)
 LOOSE = "the domain may bound what drives the element, in a way that is not looked at"
 #: Rows whose questions may be about parameters and inputs alone.
 DECLARED = frozenset({"welldef", "exergy", "environment"})
+#: What is said of an energy that was found for a law, and is not shown to be good.
+GIVE = "the energy found for the law is not shown to be one: give it, energy = '...'"
 #: Once so many questions of an obligation are open, the rest is not asked.
 MOST_OPEN = 4
 
@@ -87,7 +89,11 @@ def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver:
     if obligation.open_because:
         return Verdict.OPEN, None, obligation.open_because, "branches", ()
     for residual in obligation.residuals:
+        if residual.empty and all(solver.ask(q.query).result == "unsat" for q in residual.empty):
+            continue
         failed = _vanishes(residual, iphs)
+        if failed and residual.found:
+            return Verdict.OPEN, None, f"{failed[2]}; {GIVE}", "algebra", ()
         if failed:
             return *failed, "algebra", ()
     method, certificate = "branches" if obligation.questions else "algebra", tuple[Case, ...]()
@@ -194,7 +200,8 @@ def _answered(question: Question, solver: Asks) -> Found | None:
         if answer.result == "unsat":
             return None
         if answer.result == "sat":
-            return _refuted(question, answer, shown)
+            found = _refuted(question, answer, shown)
+            return (Verdict.OPEN, None, f"{found[2]}; {GIVE}") if question.found else found
     return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
 
 

@@ -1,0 +1,83 @@
+"""Trees made shorter: like terms added up, choices taken that signs of names decide.
+
+Input: a tree.  Output: a tree of the same value.
+"""
+
+from collections.abc import Collection
+from fractions import Fraction
+
+from piezo_sym.expressions.calculus import add, inserted, mul, neg
+from piezo_sym.expressions.exact_eval import OUTCOMES
+from piezo_sym.expressions.tree import (
+    ONE,
+    Add,
+    Cmp,
+    Div,
+    Expr,
+    If,
+    Mul,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+    rebuild,
+)
+
+
+def collected(*terms: Expr) -> Expr:
+    """Return the sum of `terms`, with like ones added up."""
+    total: dict[Expr, Fraction] = {}
+    todo = [(Fraction(1), term) for term in reversed(terms)]
+    while todo:
+        match todo.pop():
+            case (factor, Add(inner)):
+                todo += [(factor, term) for term in reversed(inner)]
+            case (factor, Neg(arg)):
+                todo.append((-factor, arg))
+            case (factor, Mul(Num(value), arg) | Mul(arg, Num(value))):
+                todo.append((factor * value, arg))
+            case (factor, Div(arg, Num(value))) if value:
+                todo.append((factor / value, arg))
+            case (factor, Num(value)):
+                total[ONE] = total.get(ONE, Fraction(0)) + factor * value
+            case (factor, term):
+                total[term] = total.get(term, Fraction(0)) + factor
+    return add(*(mul(Num(factor), term) for term, factor in total.items()))
+
+
+def tidied(node: Expr) -> Expr:
+    """Return a tree with like terms of its sums added up."""
+    inner = rebuild(node, tidied)
+    return collected(inner) if isinstance(inner, Add) else inserted(inner, {})
+
+
+def settled(node: Expr, positive: Collection[str]) -> Expr:
+    """Return a tree without choices by comparisons that are decided whatever its names are."""
+    inner = rebuild(node, lambda part: settled(part, positive))
+    match inner:
+        case If(then, Cmp(op, left, right), other):
+            sign = _sign(add(left, neg(right)), positive)
+            if sign is not None:
+                return then if OUTCOMES[op](sign) else other
+        case Pow(Neg(arg), exponent) if exponent % 2 == 0:
+            return Pow(arg, exponent)
+    return inner
+
+
+def _sign(node: Expr, positive: Collection[str]) -> int | None:
+    """Return the sign of a tree, if it is the same for all values of its names."""
+    match node:
+        case Num(value):
+            return (value > 0) - (value < 0)
+        case Sym(name):
+            return 1 if name in positive else None
+        case Neg(arg):
+            inner = _sign(arg, positive)
+            return None if inner is None else -inner
+        case Mul(left, right) | Div(left, right):
+            one, two = _sign(left, positive), _sign(right, positive)
+            return None if one is None or two is None else one * two
+        case Add(terms):
+            signs = {_sign(term, positive) for term in terms}
+            return signs.pop() if len(signs) == 1 else None
+    return None
