@@ -16,6 +16,7 @@ from .functions import KINKS
 from .laws import InputError, Node, compare, made, need, negated, num, put, sym, symbols
 from .parts import whole
 from .prover import Claim, Prover, needed, partial, taken, true
+from .slopes import vanishes
 from .spec import Element, Spec
 from .system import Finding
 
@@ -59,8 +60,12 @@ class _Audit:
         if not any(why for key, why in self.done.items() if key[0] == "temperature"):
             warm = (compare(sym(("T", body.name)), ">") for body in spec.of("body"))
             self.prover = Prover((*spec.conditions, *warm), self.ties)
+        slopes = self.found.slopes.items()
+        unlike = (x for x, (tree, state) in slopes if not vanishes(tree, state, self.prover))
+        first = next(unlike, "")
+        wrong = reasons.get("energy", "") or f"dU/d{first} is not that of the network" * bool(first)
         for name in ("skew", "casimir", "energy", "entropy"):
-            why = reasons.get("energy", "") if name in ("skew", "energy") else ""
+            why = wrong if name in ("skew", "energy") else ""
             claims = [*self.found.values] if name in ("skew", "energy") else []
             claims += _continuous(self._bent(self.found.terms)) if name == "energy" else []
             self._row(name, "", claims, system, why)

@@ -72,7 +72,8 @@ class Finding:
     """What is found of a published system, and the laws and symbols of its network.
 
     `reasons` by subject ("system", "energy"); `divisors` must not be zero, `values` must hold for
-    the energy, the sum of `terms`, to have a value; `letters` are functions of states.
+    the energy, the sum of `terms`, to have a value; `letters` are functions of states.  By state,
+    `slopes` are slopes of the energy less co-states, to be looked at branch by branch.
     """
 
     def __init__(self, spec: Spec, system: Any) -> None:
@@ -81,7 +82,7 @@ class Finding:
         self.banks = {e.name: e.lanes[0] for e in spec.elements.values() if e.lanes}
         self.counts = dict.fromkeys(self.banks.values(), LANES)
         self.field, self.known, self.values = Field(), dict[Any, Ratio](), list[Claim]()
-        self.terms = list[Node]()
+        self.terms, self.slopes = list[Node](), dict[str, tuple[Node, Any]]()
         try:
             self.text = _Published(spec, system)
             self._check()
@@ -212,4 +213,9 @@ class Finding:
             bound = {self.banks.get(name, ""): lane}
             given = self.published(laws.derivative(energy, state), bound)
             own = self.law(self.spec.elements[name], "costate", lane)
-            self._equal("energy", given, own, f"dU/d{state}")
+            costate = self.spec.elements[name].costate or num(0)
+            slope = laws.derivative(put(energy, {n: sym(w) for n, w in words.items()}), ("x", name))
+            if lane or any(part.op == "sum" for part in walk(slope)):
+                self._equal("energy", given, own, f"dU/d{state}")
+            elif not self.field.is_zero(given - own):  # it may be so on each branch
+                self.slopes[state] = Node("+", (slope, Node("neg", (costate,)))), ("x", name)

@@ -1,0 +1,48 @@
+"""Energies with kinks, looked at branch by branch by the second program."""
+
+import pytest
+
+from tests.checker.stated import forged, refused, stated
+from tests.energies.kinked import BAD_ENERGIES, TEXT
+
+CONFIRMED = (
+    "k*(q - s)/(1 + abs((q - s)/r))",
+    "k*deadzone(q, r)/(1 + abs(deadzone(q, r))/r)",
+    "F_0*sign(q)*abs(q/r)**(3/2)",
+    "F_0*abs((q - s)/r)**n*sign(q - s)",
+    "k*q*abs(q/r)**n",
+)
+#: The energy found, a part of it, and what is put in its place.
+WRONG = (
+    ("F_0*sign(q)*abs(q/r)**(3/2)", "0.4", "0.5"),
+    ("F_0*abs(q/r)**n*sign(q)", "(n + 1)", "(n + 2)"),
+    ("F_0*abs(q/r)**n*sign(q)", "abs(q/r)", "(q/r)"),
+    ("k*(q - s)/(1 + abs(q - s)/r)", "abs(q - s)", "abs(q)"),
+    ("k*deadzone(q, r)/(1 + abs(deadzone(q, r))/r)", "log(-q)", "log(r - q)"),
+    ("k*deadzone(q, r)/(1 + abs(deadzone(q, r))/r)", "k*r*r*log(r)", "k*r*r*log(2*r)"),
+    ("k*deadzone(q, r)/(1 + abs(deadzone(q, r))/r)", "if q < -r", "if q < r"),
+)
+
+
+@pytest.mark.parametrize("law", CONFIRMED)
+def test_energies_are_confirmed_on_each_branch(law):
+    text = TEXT.replace("LAW", law)
+    rows = refused(text, stated(text))
+    assert not rows
+
+
+@pytest.mark.parametrize(("law", "old", "new"), WRONG)
+def test_an_energy_changed_on_one_side_is_not_confirmed(law, old, new):
+    text = TEXT.replace("LAW", law)
+    proofs = stated(text)
+    energy = proofs["system"]["energy"]
+    assert old in energy, energy
+    proofs["system"]["energy"] = energy.replace(old, new, 1)
+    assert ("energy", "") in refused(text, proofs)
+
+
+@pytest.mark.parametrize("energy", BAD_ENERGIES[::2])
+def test_energies_that_jump_or_lack_a_value_are_not_confirmed(energy):
+    text = TEXT.replace('force = "LAW"', f'energy = "{energy}"')
+    rows = {name for name, _ in refused(text, forged(text))}
+    assert rows & {"energy", "continuous", "welldef"}
