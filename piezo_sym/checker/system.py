@@ -215,7 +215,8 @@ class Finding:
             own = self.law(self.spec.elements[name], "costate", lane)
             costate = self.spec.elements[name].costate or num(0)
             slope = laws.derivative(put(energy, {n: sym(w) for n, w in words.items()}), ("x", name))
-            if lane or any(part.op == "sum" for part in walk(slope)):
+            ops = {part.op for tree in (slope, costate) for part in walk(tree)}
+            if lane or "sum" in ops or ops.isdisjoint({"if", *KINKS}):
                 self._equal("energy", given, own, f"dU/d{state}")
             elif not self.field.is_zero(given - own):  # it may be so on each branch
                 self.slopes[state] = Node("+", (slope, Node("neg", (costate,)))), ("x", name)
