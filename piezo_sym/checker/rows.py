@@ -60,10 +60,7 @@ class _Audit:
         if not any(why for key, why in self.done.items() if key[0] == "temperature"):
             warm = (compare(sym(("T", body.name)), ">") for body in spec.of("body"))
             self.prover = Prover((*spec.conditions, *warm), self.ties)
-        slopes = self.found.slopes.items()
-        unlike = (x for x, (tree, state) in slopes if not vanishes(tree, state, self.prover))
-        first = next(unlike, "")
-        wrong = reasons.get("energy", "") or f"dU/d{first} is not that of the network" * bool(first)
+        wrong = self._wrong_slope()
         for name in ("skew", "casimir", "energy", "entropy"):
             why = wrong if name in ("skew", "energy") else ""
             claims = [*self.found.values] if name in ("skew", "energy") else []
@@ -110,6 +107,13 @@ class _Audit:
         except (InputError, ArithmeticError, RuntimeError) as error:
             reason = str(error) or type(error).__name__
         self.done[name, owner] = reason
+
+    def _wrong_slope(self) -> str:
+        """Return why the energy is not that of the co-states; nothing if it is."""
+        unlike = (x for x, own in self.found.slopes.items() if not vanishes(*own, self.prover))
+        first = next(unlike, "")
+        known = f"dU/d{first} is not that of the network" * bool(first)
+        return self.found.reasons.get("energy", "") or known
 
     def _own_values(self) -> Iterator[Claim]:
         """Yield that the spec's own values, in each lane, are in its domain."""
