@@ -39,7 +39,10 @@ COHERENT = {
     "N": (1, 1, -2), "Pa": (1, -1, -2), "J": (1, 2, -2), "W": (1, 2, -3), "Hz": (0, 0, -1),
     "C": (0, 0, 1, 1), "V": (1, 2, -3, -1), "F": (-1, -2, 4, 2), "ohm": (1, 2, -3, -2),
     "S": (-1, -2, 3, 2), "Wb": (1, 2, -2, -1), "T": (1, 0, -2, -1), "H": (1, 2, -2, -2),
+    "mol": (0, 0, 0, 0, 0, 1), "rad": (),
 }  # fmt: skip
+#: The prefixes of these that are known without pint, and their powers of ten.
+PREFIXES = {"p": -12, "n": -9, "u": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
 #: The units known, by pint's long names; SI prefixes go with each.
 _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
     farad ohm siemens weber tesla henry radian degree turn revolutions_per_minute minute hour day
@@ -196,9 +199,12 @@ def _named(name: str, where: str, value: float | None, alone: bool = True, text:
     One with an offset is a temperature if it stands alone; else it is a difference of them, as in
     W/degC.
     """
-    if name in COHERENT:
-        powers = (*COHERENT[name], *(0,) * len(BASES))[: len(BASES)]
-        return Unit(name, name, Fraction(1), tuple(map(Fraction, powers)))
+    prefix = name[:1] if name[1:] in COHERENT.keys() - {"1", "kg"} else ""
+    if name in COHERENT or prefix in PREFIXES:
+        si = name if name in COHERENT else name[1:]
+        factor = Fraction(1) if si == name else Fraction(10) ** PREFIXES[prefix]
+        powers = (*COHERENT[si], *(0,) * len(BASES))[: len(BASES)]
+        return Unit(name, si, factor, tuple(map(Fraction, powers)))
     if not any(root in UNITS for _, root, _ in _registry().parse_unit_name(name)):
         raise SpecError(f"unknown unit {quote(name)}", where, remedy=_meant(name, text))
     try:

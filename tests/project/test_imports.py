@@ -46,6 +46,23 @@ def test_loading_a_spec_loads_no_sympy(tmp_path):
     assert found.isdisjoint({"sympy", "z3", "xarray", "matplotlib"})
 
 
+def test_shipped_specs_load_no_pint(tmp_path):
+    """Units with everyday prefixes are known without it: N/um, mm, kV."""
+    code = "from piezo_sym.build import shipped_models; shipped_models()"
+    assert "pint" not in loaded(code, tmp_path)
+
+
+def test_types_of_elements_are_built_where_a_spec_is_read_alone(tmp_path):
+    """A process that is sent a model reads no spec: it needs none of pydantic's validators."""
+    code = """
+import pickle, subprocess, sys, piezo_sym
+ask = "import pickle, sys; print(type(pickle.load(sys.stdin.buffer)).__pydantic_complete__)"
+sent = pickle.dumps(piezo_sym.load("piezo_stack"))
+print(subprocess.run([sys.executable, "-c", ask], input=sent, capture_output=True).stdout.decode())
+"""
+    assert run(code, tmp_path, str(ROOT)).strip() == "False"
+
+
 def test_a_run_loads_nothing_of_the_derivation(tmp_path):
     found = loaded("import piezo_sym; piezo_sym.simulate('piezo_stack', duration=1e-4)", tmp_path)
     assert "xarray" in found

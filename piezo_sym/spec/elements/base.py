@@ -49,7 +49,7 @@ MODULE = "piezo_sym.spec.elements"
 class Frozen(BaseModel):
     """Base of the tables of a spec: frozen, and closed to unknown keys."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
 
 @final
