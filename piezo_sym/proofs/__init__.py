@@ -46,11 +46,15 @@ def decide(iphs: IPHS) -> Report:
     `piezo_sym.verify` calls a row PROVED only after more than this: see `verification`.
     """
     rows: list[Row] = []
+    by_name: dict[tuple[str, str], list[Row]] = {}
     found, asked = obligations(iphs), opinions()
     empty = not_shown(iphs, assumptions_of(iphs), asked) if found else ""
     for obligation in found:
         left = replace(obligation, open_because=empty) if empty else obligation
-        rows.append(prove(left, iphs, rows, asked))
+        needed = dict.fromkeys((*left.rests_on, ("welldef", left.element)))
+        before = [row for name in needed for row in by_name.get(name, ())]
+        rows.append(row := prove(left, iphs, before, asked))
+        by_name.setdefault((row.id, row.element), []).append(row)
     return Report(iphs.model.name, (*rows, *units(iphs)), found, published(iphs))
 
 

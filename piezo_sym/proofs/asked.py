@@ -29,9 +29,9 @@ from piezo_sym.expressions.tree import (
     Sym,
     names,
 )
+from piezo_sym.proofs.binding import connected
 from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.obligations import NEVER, Question
-from piezo_sym.proofs.query import connected
 from piezo_sym.proofs.solvers import Answer, Asks
 from piezo_sym.spec.tables import greater
 

@@ -15,6 +15,7 @@ from typing import final
 import sympy as sp
 
 from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Expr, Num, Sym, names
+from piezo_sym.proofs.binding import binding
 from piezo_sym.proofs.branches import (
     Branch,
     TooManyBranchesError,
@@ -24,7 +25,7 @@ from piezo_sym.proofs.branches import (
     parts,
     settled,
 )
-from piezo_sym.proofs.query import Query, binding, query
+from piezo_sym.proofs.query import Query, query
 from piezo_sym.proofs.rational import cleared, implied, parts_of
 
 #: A claim that holds nowhere: it follows only where nothing is.
@@ -76,6 +77,10 @@ class Question:
     split: bool = True
     witness: bool = False
     found: bool = False
+
+    def __hash__(self) -> int:
+        """Return a hash without the assumptions, which questions of a model have in common."""
+        return hash((self.label, self.claim, self.original, self.branch))
 
     @cached_property
     def kept(self) -> tuple[Cmp, ...]:

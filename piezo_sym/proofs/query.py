@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
 from typing import final
 
 from piezo_sym.expressions.tree import Add, Cmp, Expr, If, Mul, Neg, Num, Pow, Sym, names
@@ -46,60 +45,6 @@ class Query:
         lines += [f"(assert {_clause(clause)})" for clause in self.given]
         lines.append(f"(assert (not {_comparison(self.claim)}))")
         return "\n".join(lines)
-
-
-def connected(conditions: Iterable[Cmp], words: Iterable[str]) -> tuple[Cmp, ...]:
-    """Return the conditions that are joined to some names, directly or by way of others.
-
-    Leaving out the others can only make a claim harder to prove; a counterexample has to keep them.
-    """
-    near = set(words)
-    found = [(condition, names(condition)) for condition in conditions]
-    while grown := {n for _, own in found if not near.isdisjoint(own) for n in own} - near:
-        near |= grown
-    return tuple(c for c, own in found if not own or not near.isdisjoint(own))
-
-
-@lru_cache(256)
-def binding(conditions: tuple[Cmp, ...], words: frozenset[str]) -> tuple[Cmp, ...]:
-    """Return the connected conditions, without those that some value of a name keeps in any case.
-
-    So it is where all conditions on a name, which is none of `words`, bound it from the same side:
-    the temperatures of other bodies, say, of which is said that they are above a common one.
-    """
-    found = tuple(dict.fromkeys(connected(conditions, words)))
-    others = [[(n, side) for n, side in _sides(c) if n not in words] for c in found]
-    users: dict[str, dict[int, str]] = {}
-    for n, sides in enumerate(others):
-        for name, side in sides:
-            users.setdefault(name, {})[n] = side
-    waiting, kept = dict.fromkeys(users), set(range(len(found)))
-    while waiting:
-        bounded = users[waiting.popitem()[0]]
-        if len(about := {*bounded.values()}) == 1 and all(about):
-            for n in tuple(bounded):
-                kept.remove(n)
-                for other, _ in others[n]:
-                    del users[other][n]
-                    waiting[other] = None
-    return tuple(condition for n, condition in enumerate(found) if n in kept)
-
-
-@lru_cache(1 << 14)
-def _sides(condition: Cmp) -> tuple[tuple[str, str], ...]:
-    """Return each name of a comparison, and from which side it is bounded, if it stands alone."""
-    return tuple((name, _side(name, condition)) for name in names(condition))
-
-
-def _side(name: str, condition: Cmp) -> str:
-    """Return from which side a comparison bounds a name, which stands alone; else nothing."""
-    sides = {"<": "below", ">": "above"}.get(condition.op[0], "")
-    match condition.left, condition.right:
-        case Sym(own), other if own == name and name not in names(other):
-            return sides
-        case other, Sym(own) if own == name and name not in names(other):
-            return {"below": "above", "above": "below"}.get(sides, "")
-    return ""
 
 
 def query(

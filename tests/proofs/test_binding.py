@@ -3,10 +3,11 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from piezo_sym.expressions.parse import parse_condition
+from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, names
-from piezo_sym.proofs.query import binding, connected, query
+from piezo_sym.expressions.tree import Cmp, Sym, names
+from piezo_sym.proofs.binding import binding, connected
+from piezo_sym.proofs.query import query
 from piezo_sym.proofs.solvers import solver
 
 NAMES = ("a", "b", "c", "d", "e")
@@ -51,3 +52,43 @@ def test_what_is_left_out_decides_nothing(texts, claim):
             for given in (connected(domain, names(claimed)), binding(domain, names(claimed)))
         }
         assert len(answers - {"unknown"}) <= 1
+
+
+def sides_of(name, condition):
+    """Return from which sides a comparison bounds a name: both, unless it stands alone."""
+    left, right = condition.left, condition.right
+    if (left == Sym(name)) == (right == Sym(name)) or name in {*names(left)} & {*names(right)}:
+        return {"above", "below"}
+    if name not in (spell(left), spell(right)) or condition.op not in {"<", "<=", ">", ">="}:
+        return {"above", "below"}
+    return {"above" if (condition.op[0] == ">") == (left == Sym(name)) else "below"}
+
+
+def by_definition(domain, words):
+    """Return what binds some words, left out one after the other until nothing can be."""
+    left = connected(domain, words)
+    while free := [
+        n
+        for n in {n for c in left for n in names(c)} - {*words}
+        if len(set().union(*(sides_of(n, c) for c in left if n in names(c)))) == 1
+    ]:
+        left = tuple(c for c in left if free[0] not in names(c))
+    return tuple(dict.fromkeys(left))
+
+
+OPS = st.sampled_from(["<", "<=", ">", ">=", "=", "!="])
+ANY = st.builds(
+    lambda op, left, right: Cmp(op, parse_law(left, "test"), parse_law(right, "test")),
+    *(OPS, TERMS, TERMS),
+)
+MORE = st.lists(st.tuples(st.lists(ANY, max_size=4), st.sets(st.sampled_from(NAMES), max_size=3)))
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(ANY, max_size=40), MORE)
+def test_questions_with_one_beginning_need_what_each_alone_needs(domain, questions):
+    """Whatever was asked before, and however much the domain has that they do not need."""
+    for more, words in questions:
+        given = (*domain, *more)
+        assert binding(given, words) == by_definition(given, words)
+        assert binding(given[::2], words) == by_definition(given[::2], words)
