@@ -1,19 +1,24 @@
 """Processes that answer requests: one may crash, hang or run out of memory, and nothing else does.
 
 Input: a command, and requests of one line.  Output: the lines of an answer, in time or not at all.
+Or some work, done in a copy of this process `beside` what this one does.
 """
 
 from __future__ import annotations
 
 import atexit
 import os
+import pickle
 import signal
 import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import suppress
-from typing import final
+from contextlib import contextmanager, suppress
+from typing import BinaryIO, NoReturn, TypeVar, final
+from weakref import WeakSet
+
+T = TypeVar("T")
 
 #: No line is longer; of a process that never ends its line no more is read.
 LONGEST = 1 << 28
@@ -36,6 +41,7 @@ class Worker:
         self.arguments, self.group = arguments, group
         self.process: subprocess.Popen[bytes] | None = None
         self._lock = threading.Lock()
+        _workers.add(self)
         atexit.register(self.close)
 
     def ask(
@@ -82,6 +88,10 @@ class Worker:
                 pipe and pipe.close()
         self.process = None
 
+    def forget(self) -> None:
+        """Leave the process to the one that this one is a copy of; start another when asked."""
+        self.process, self._lock = None, threading.Lock()
+
     def _start(self) -> None:
         if self.process is None or self.process.poll() is not None:
             self.close()
@@ -116,3 +126,60 @@ class Worker:
             if self.group:
                 os.killpg(self.process.pid, signal.SIGKILL)
             self.process.kill()
+
+
+_workers: WeakSet[Worker] = WeakSet()
+
+
+@contextmanager
+def beside(work: Iterator[T]) -> Iterator[Iterator[T]]:
+    """Give what some work yields, done in a copy of this process, which ends with the context.
+
+    What the work raises is raised where its next result is asked for: an `EOFError` if the copy
+    has ended, by a fault or for want of memory, which is as limited as that of this process.
+    """
+    (back, to), (alive, held) = os.pipe(), os.pipe()
+    if (copy := os.fork()) == 0:
+        os.close(back)
+        os.close(held)
+        _copied(work, os.fdopen(to, "wb"), alive)
+    os.close(to)
+    os.close(alive)
+    with os.fdopen(back, "rb") as results:
+        try:
+            yield _received(results)
+        finally:
+            os.kill(copy, signal.SIGKILL)
+            os.waitpid(copy, 0)
+            os.close(held)
+
+
+def _received(results: BinaryIO) -> Iterator[T]:
+    while True:
+        try:
+            kind, value = pickle.load(results)
+        except pickle.UnpicklingError:  # it ended while it wrote
+            raise EOFError from None
+        if kind == "raised":
+            raise value
+        yield value
+
+
+def _copied(work: Iterator[T], results: BinaryIO, alive: int) -> NoReturn:
+    """Do the work in the copy, until it is done or the process that is copied has ended."""
+    try:
+        nothing = os.open(os.devnull, os.O_RDWR)  # others wait for the ends of its pipes
+        os.dup2(nothing, 0)
+        os.dup2(nothing, 1)
+        for worker in _workers:
+            worker.forget()
+        threading.Thread(target=lambda: os.read(alive, 1) or os._exit(1), daemon=True).start()
+        try:
+            for value in work:
+                pickle.dump(("yielded", value), results)
+                results.flush()
+        except Exception as error:
+            pickle.dump(("raised", error), results)
+            results.flush()
+    finally:
+        os._exit(0)

@@ -6,8 +6,10 @@ A row is PROVED in the last one only if it was proved and no number contradicts 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
+from typing import Any
 
 from piezo_sym.codegen import collocation_of, lower, printed
 from piezo_sym.falsify import POINTS, Attack, falsify, module_from
@@ -22,25 +24,37 @@ ATTACKED = frozenset(
 )
 
 
-def examine(iphs: IPHS, points: int = POINTS) -> Iterator[Report]:
+def examine(
+    iphs: IPHS,
+    points: int = POINTS,
+    apart: Callable[[Iterator[Any]], AbstractContextManager[Iterator[Any]]] = nullcontext,
+) -> Iterator[Report]:
     """Yield what is known of a system, the verdicts that were not attacked yet among the first.
 
     Parameters
     ----------
     points : how many points the attack takes; fewer in tests of many small networks alone.
+    apart : where modules are printed and read back: in turn, or `beside` proofs and attacks.
     """
-    proved = decide(iphs)
-    yield proved
-    texts = printed(lower(iphs, ""), collocation_of(iphs))
-    rows = (*proved.rows, *program_rows(iphs, texts))
-    yield replace(proved, rows=rows)
-    proofs = (row for row in rows if row.id in ATTACKED and row.verdict is Verdict.PROVED)
-    claims = tuple((row.id, row.element) for row in proofs)
-    attacks = falsify(iphs, module_from(texts[".py"]), claims, points=points)
+    with apart(_translated(iphs)) as translated:
+        proved = decide(iphs)
+        yield proved
+        module = module_from(next(translated))
+        proofs = (r for r in proved.rows if r.id in ATTACKED and r.verdict is Verdict.PROVED)
+        claims = tuple((row.id, row.element) for row in proofs)
+        attacks = falsify(iphs, module, claims, points=points)
+        rows = (*proved.rows, *next(translated))
     found = {(attack.id, attack.element): attack for attack in attacks}
     attacked = (_attacked(row, found.get((row.id, row.element))) for row in rows)
     rounding = (_rounding(attack) for attack in attacks if attack.worst)
     yield replace(proved, rows=(*attacked, *rounding))
+
+
+def _translated(iphs: IPHS) -> Iterator[Any]:
+    """Yield the text of the NumPy module of a system, and the row on all printed texts."""
+    texts = printed(lower(iphs, ""), collocation_of(iphs))
+    yield texts[".py"]
+    yield program_rows(iphs, texts)
 
 
 def unfinished(report: Report, reason: str) -> Report:

@@ -7,13 +7,15 @@ the memory there is, is OPEN and says so.
 from __future__ import annotations
 
 import base64
+import os
 import pickle
 from collections.abc import Iterator
+from contextlib import nullcontext
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from piezo_sym.errors import PiezoError
-from piezo_sym.processes import Worker
+from piezo_sym.processes import Worker, beside
 
 if TYPE_CHECKING:
     from piezo_sym.iphs import IPHS
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
 
 #: Seconds for a system of up to SMALL elements, and for each element more.
 PATIENCE, MORE_PATIENCE, SMALL = 28.0, 1.0, 10
+#: Systems of fewer elements are examined sooner than a process is copied.
+FEWEST_BESIDE = 5
+#: Said where a process has ended.
+ENDED = "not decided: the process ended, for want of memory or by a fault"
 #: The line after the last message on a subject.
 END = b"\n"
 
@@ -78,7 +84,7 @@ def messages(worker: Worker, subject: object, seconds: float) -> Iterator[Any]:
     except TimeoutError:
         yield f"not decided in {seconds:g} s"
     except (EOFError, BrokenPipeError):
-        yield "not decided: the process ended, for want of memory or by a fault"
+        yield ENDED
 
 
 def packed(subject: object) -> bytes:
@@ -100,8 +106,11 @@ def answer(subject: Any) -> Iterator[object]:
 
     try:
         iphs = subject if isinstance(subject, IPHS) else derive(subject)
-        yield from examine(iphs)
+        several = len(iphs.model.flatten().elements) >= FEWEST_BESIDE and (os.cpu_count() or 1) > 1
+        yield from examine(iphs, apart=beside if several else nullcontext)
     except PiezoError as error:
         yield error
+    except EOFError:
+        yield ENDED
     except (MemoryError, RecursionError):
         yield "needs more memory than it is given"

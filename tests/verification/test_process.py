@@ -1,16 +1,21 @@
 """The process in which systems are examined ends in time, and says what was not decided."""
 
+import os
 import pickle
+import signal
+import subprocess
+import sys
+import time
 
 import pytest
 
 from piezo_sym import PiezoError, derive, load, verify
 from piezo_sym.errors import SpecError
-from piezo_sym.processes import Worker
+from piezo_sym.processes import Worker, beside
 from piezo_sym.proofs import Report, Verdict
 from piezo_sym.spec.load import parse
-from piezo_sym.verification import process
-from piezo_sym.verification.process import examined_model, messages
+from piezo_sym.verification import examine, process
+from piezo_sym.verification.process import ENDED, answer, examined_model, messages
 from tests.proofs.test_false_proofs import MASS
 
 
@@ -80,3 +85,98 @@ def test_laws_that_once_hung_end(name):
     verdicts = {(row.id, row.element): row.verdict for row in report.rows}
     if force.startswith("-"):
         assert verdicts["passive", "damper"] is not Verdict.PROVED
+
+
+def running(pid):
+    """Return whether a process runs; one that has ended and was not asked for does not."""
+    try:
+        with open(f"/proc/{pid}/stat") as file:
+            return file.read().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def ended(pid):
+    """Return whether a process ends within a while."""
+    for _ in range(600):
+        if not running(pid):
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def own_pid(then=lambda: None):
+    """Yield the number of the process in which this is done, then do something."""
+    yield os.getpid()
+    yield then()
+
+
+def test_work_beside_is_done_in_a_copy_that_ends_with_its_context():
+    with beside(own_pid(lambda: time.sleep(600))) as found:
+        copy = next(found)
+        assert copy != os.getpid()
+        assert running(copy)
+    assert not running(copy)
+
+
+def test_errors_of_work_beside_are_raised_where_its_results_are_asked_for():
+    def failing():
+        yield 1
+        raise SpecError("what", "where")
+
+    with beside(failing()) as found:
+        assert next(found) == 1
+        with pytest.raises(SpecError, match="what"):
+            next(found)
+
+
+def test_work_beside_that_dies_is_no_result():
+    with beside(own_pid(lambda: os.kill(os.getpid(), signal.SIGKILL))) as found:
+        next(found)
+        with pytest.raises(EOFError):
+            next(found)
+
+
+def test_a_copy_has_processes_of_its_own():
+    """Two that wrote into one pipe would read each other's answers."""
+    echo = Worker("-uc", "import os\nwhile input(): print(os.getpid())")
+
+    def asked():
+        yield [*echo.ask(b"who", 60.0)]
+
+    (own,) = echo.ask(b"who", 60.0)
+    with beside(asked()) as found:
+        assert next(found) != [own]
+    assert [*echo.ask(b"who", 60.0)] == [own]
+    echo.close()
+
+
+def test_a_copy_ends_with_the_process_that_is_copied():
+    code = """
+import os, time
+from piezo_sym.processes import beside
+def work():
+    yield os.getpid()
+    time.sleep(600)
+with beside(work()) as found:
+    print(next(found), flush=True)
+    time.sleep(600)
+"""
+    made = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    copy = int(made.stdout.readline())
+    made.kill()
+    assert made.stdout.read() == ""  # the copy does not hold the pipe
+    made.wait()
+    made.stdout.close()
+    assert ended(copy)
+
+
+def test_a_program_whose_reading_dies_is_open(monkeypatch):
+    monkeypatch.setattr(examine, "program_rows", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
+    first, last = answer(load("piezo_stack"))
+    assert last == ENDED
+    monkeypatch.setattr(process, "messages", lambda *_: iter((first, last)))
+    rows = {row.id: row for row in examined_model(load("piezo_stack")).rows}
+    assert rows["program"].verdict is Verdict.OPEN
+    assert ENDED in rows["program"].reason
+    assert rows["passive"].verdict is Verdict.OPEN  # it is not known what numbers say
