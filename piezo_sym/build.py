@@ -25,7 +25,7 @@ from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
 from piezo_sym.spec.values import Template
-from piezo_sym.verification import verify
+from piezo_sym.verification.process import examining
 from piezo_sym.version import VERSION
 
 MISSING, DIFFERS, ENDS = "is missing", "differs from its spec", "has other line ends than \\n"
@@ -62,11 +62,12 @@ def render(
     A model that is not proved is refused, unless `allow_unproved`; `report` is its verdicts, if
     they are known already.
     """
-    iphs = derive(model)
-    report = report or verify(iphs)
+    with examining(model, report) as examined:
+        found = blank_texts(derive(model))
+        report = examined()
     if not allow_unproved:
         report.raise_if_not_proved()
-    found = replace(blank_texts(iphs), verdict=verdict_line(report))
+    found = replace(found, verdict=verdict_line(report))
     texts = found.filled(model.flatten().model_dump())
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {

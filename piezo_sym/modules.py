@@ -178,15 +178,18 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
     """Return the module of a model, generated into the user's cache, with its template."""
     from piezo_sym.build import blank_texts, verdict_line
     from piezo_sym.derivation import derive
-    from piezo_sym.verification import verify
+    from piezo_sym.verification.process import examining
 
     data = model.flatten().model_dump()
-    shape, iphs = shape_hash(data), derive(model)
+    shape = shape_hash(data)
     found = cached_template(model.name, shape)
-    if found is None:
-        found = blank_texts(iphs)
-        with _compiling_ahead(model.name, shape, found.filled(data), stages):
-            report = verify(iphs)
+    if found is not None:
+        derive(model)  # values may contradict each other where others do not
+    else:
+        with examining(model) as examined:
+            found = blank_texts(derive(model))
+            with _compiling_ahead(model.name, shape, found.filled(data), stages):
+                report = examined()
         found = replace(found, verdict=verdict_line(report))
         if report.failures and (module := _unproved(model, found.filled(data))):
             return module

@@ -9,9 +9,11 @@ from __future__ import annotations
 import base64
 import os
 import pickle
-from collections.abc import Iterator
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager, nullcontext
 from functools import cache
+from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from piezo_sym.errors import PiezoError
@@ -51,6 +53,29 @@ def examined_model(model: Model) -> Report:
         If the model cannot be derived.
     """
     return _report(model, model)
+
+
+@contextmanager
+def examining(model: Model, known: Report | None = None) -> Iterator[Callable[[], Report]]:
+    """Give what waits for the report on a model, which is made from now on unless it is known.
+
+    What `examined_model` raises is raised there; where this process fails before, nobody waits.
+    """
+    found: Future[Report] = Future()
+
+    def examine() -> None:
+        try:
+            found.set_result(known or examined_model(model))
+        except BaseException as error:  # raised again where the report is asked for
+            found.set_exception(error)
+
+    Thread(target=examine, daemon=True).start()
+    try:
+        yield found.result
+    except BaseException:
+        if not found.done():
+            _examiner().close()
+        raise
 
 
 def _report(subject: IPHS | Model, model: Model) -> Report:

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 
 import pytest
 
@@ -15,7 +16,13 @@ from piezo_sym.processes import Worker, beside
 from piezo_sym.proofs import Report, Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.verification import examine, process
-from piezo_sym.verification.process import ENDED, answer, examined_model, messages
+from piezo_sym.verification.process import (
+    ENDED,
+    answer,
+    examined_model,
+    examining,
+    messages,
+)
 from tests.proofs.test_false_proofs import MASS
 
 
@@ -180,3 +187,28 @@ def test_a_program_whose_reading_dies_is_open(monkeypatch):
     assert rows["program"].verdict is Verdict.OPEN
     assert ENDED in rows["program"].reason
     assert rows["passive"].verdict is Verdict.OPEN  # it is not known what numbers say
+
+
+def test_a_report_is_made_while_this_process_does_something_else():
+    model = load("oscillator")
+    with examining(model) as found:
+        derive(model)
+        report = found()
+    assert report.rows == examined_model(model).rows
+    with examining(model, report) as found:
+        assert found() is report
+
+
+def test_errors_of_a_report_are_raised_where_it_is_asked_for():
+    with examining("no model") as found, pytest.raises(AttributeError):
+        found()
+
+
+def test_who_is_stopped_leaves_no_examination_behind():
+    with suppress(KeyboardInterrupt), examining(load("piezo_stack")):
+        while process._examiner().process is None:
+            time.sleep(0.01)
+        left = process._examiner().process.pid
+        raise KeyboardInterrupt
+    assert ended(left)
+    assert examined_model(load("oscillator")).proved
