@@ -47,8 +47,12 @@ FAULTS = {
     "hangs": "time.sleep(60)",
     "closes its ears": "os.close(0); os.close(1); time.sleep(60)",
 }
-#: True, as Motzkin's form is not negative, and beyond what a solver decides.
-HARD = "x**4*y**2 + x**2*y**4 + z**6 - 3*x**2*y**2*z**2 + 0.001*w**2*(x - y)**2*(z - w)**2 >= 0"
+#: True, as Choi and Lam's form is not negative, and beyond what a solver decides: it has six names,
+#: since of Motzkin's form with one more z3 finds a proof once in many runs.
+HARD = (
+    "x**2*y**2 + y**2*z**2 + z**2*x**2 + w**4 - 4*x*y*z*w"
+    " + u**2*(x - w)**2*(y - z)**2 + 0.001*v**2*(u - x)**2*(z - w)**2 >= 0"
+)
 
 
 def claim(text, *given):
