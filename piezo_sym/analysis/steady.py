@@ -238,12 +238,6 @@ def _refuse_residual(strobe: Stroboscope, found: SteadyState, rtol: float) -> No
         raise RunError(what, where, remedy="simulate until it settles")
 
 
-def _largest_multiplier(slope: FloatArray, conserved: FloatArray) -> float:
-    """Return the largest multiplier of motions that leave alone what is conserved."""
-    free = np.linalg.svd(conserved)[2][len(conserved) :] if len(conserved) else np.eye(len(slope))
-    return float(np.max(np.abs(np.linalg.eigvals(free @ slope @ free.T)), initial=0.0))
-
-
 def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyState:
     orbit = strobe.run(x, times=SAMPLES + 1, rtol=ORBIT_RTOL)
     states = strobe.states_of(orbit)
@@ -251,7 +245,9 @@ def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyS
     mean, coldest, hottest = over_period(T)
     size = strobe.look(x).size
     heats = [orbit[f"heat_{name}"] for name in {r.name: None for r in strobe.module.PROCESSES}]
-    multiplier = _largest_multiplier(slope, strobe.conserved * size)
+    fixed = strobe.conserved * size  # motions that leave alone what is conserved
+    free = np.linalg.svd(fixed)[2][len(fixed) :] if len(fixed) else np.eye(len(slope))
+    multiplier = float(np.max(np.abs(np.linalg.eigvals(free @ slope @ free.T)), initial=0.0))
     return SteadyState(
         frequency=strobe.frequency,
         temperature=mean,

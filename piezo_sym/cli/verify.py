@@ -113,18 +113,15 @@ def _print(report: Report) -> None:
         *("property", "element", "statement", "points", "verdict"),
     )
     for row in report.rows:
+        points = f"{row.points:,}" if row.points else ""
         verdict = Text(row.verdict.value, style=STYLES[row.verdict.value])
         if not row.required:
             verdict = Text(f"{row.verdict.value} (information)", style="dim")
-        add_row(columns, row.id, row.element, row.statement, _count(row.points), verdict)
+        add_row(columns, row.id, row.element, row.statement, points, verdict)
     console().print(columns)
     for row in report.rows:
         if row.reason:
             console().print(_why(row), markup=False, highlight=False)
-
-
-def _count(points: int) -> str:
-    return f"{points:,}" if points else ""
 
 
 def _why(row: Row) -> str:

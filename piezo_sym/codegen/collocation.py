@@ -25,7 +25,6 @@ from piezo_sym.codegen.program import Entry, Limit, Names, OutputRow, Quantity, 
 from piezo_sym.codegen.quantities import COSTATES, Quantities, quantities_of
 from piezo_sym.codegen.switches import Switch, switched
 from piezo_sym.expressions.calculus import compared, is_affine
-from piezo_sym.expressions.tree import names
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body, Storage
 
@@ -122,7 +121,8 @@ def _stage(q: Quantities, means: tuple[Quantity, ...]) -> Stage:
     booked = (*supply_of(q), *heats_of(q), *productions_of(q), *exchanges_of(q))
     defined = tuple(item for item in q.defined if item not in means)
     found = switched(defined, (*rates, *booked), q.lanes, new, means=means)
-    limits = (limit for limit in q.limits if _moves(q, limit))
+    states = {state.name for state in q.states}  # the other conditions hold for a whole run
+    limits = (m for m in q.limits if states & {*needed(q.defined, [m.margin])[1]})
     return Stage(
         quantities=tuple(map(sharp_quantity, found.quantities)),
         rates=found.rows[: len(rates)],
@@ -132,12 +132,6 @@ def _stage(q: Quantities, means: tuple[Quantity, ...]) -> Stage:
         taken=frozenset(new.taken),
         bends=found.bends,
     )
-
-
-def _moves(q: Quantities, limit: Limit) -> bool:
-    """Return whether a condition depends on the state: the others hold for a whole run."""
-    used = {*needed(q.defined, [limit.margin])[1], *names(limit.margin)}
-    return not used.isdisjoint(state.name for state in q.states)
 
 
 def _slopes(q: Quantities, means: tuple[Quantity, ...]) -> Slopes:

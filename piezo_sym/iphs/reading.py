@@ -140,7 +140,9 @@ def document(reading: Reading) -> str:
         shown = matrix.map(reading.write)
         return matrix_latex(shown.rows, shown.cols, shown.full, shown.own)
 
-    entropies = list(_entropies(system))
+    rows = zip(system.states, system.dS, strict=True)
+    entropies = [symbol_latex(slot.label) for slot, one in rows if one != 0]
+    names = [symbol_latex(slot_text(slot)) for slot in system.states]
     total = [rf"S_{{\mathrm{{total}}}} = {joined(entropies)}"] if len(entropies) > 1 else []
     driven = [
         f"g = {vector(system.g)}",
@@ -149,7 +151,7 @@ def document(reading: Reading) -> str:
         f"y_s = g^T \\frac{{\\partial S}}{{\\partial x}} = {vector(system.y_s)}",
     ]
     displays = [
-        f"x = {_slots(system)}",
+        rf"x = \left({', '.join(names)}\right)^T",
         *total,
         rf"\frac{{\partial U}}{{\partial x}} = {vector(system.E)}",
         f"J_0 = {vector(system.J0)}",
@@ -159,17 +161,6 @@ def document(reading: Reading) -> str:
         equations_latex(reading),
     ]
     return "\n\n".join(f"\\[\n{display}\n\\]" for display in displays)
-
-
-def _entropies(system: System) -> Iterator[str]:
-    for slot, one in zip(system.states, system.dS, strict=True):
-        if one != 0:
-            yield symbol_latex(slot.label)
-
-
-def _slots(system: System) -> str:
-    names = [symbol_latex(slot_text(slot)) for slot in system.states]
-    return rf"\left({', '.join(names)}\right)^T"
 
 
 def _process(reading: Reading, k: int, vector: Callable[[LaneMatrix], str]) -> Iterator[str]:

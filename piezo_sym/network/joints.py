@@ -194,7 +194,10 @@ def _states(circuit: Circuit, joint: Joint, Z: sp.Matrix) -> Iterator[Storage]:
         return add(*(_term(inserted(coefficient(c), ratios), powers, words) for powers, c in terms))
 
     divisor, adjugate = spelled(A.det()), A.adjugate().applyfunc(sp.expand)
-    y = [_beyond_rest(joint, n) for n in range(Z.cols)]
+    y = []  # x_r - Z^T x_0
+    for n, member in enumerate(joint.kept):
+        rest = add(*(mul(other.shares[n], other.rest) for other in joint.members))
+        y.append(add(Sym(member.store.state), neg(rest)))
     tops = [
         add(*(mul(spelled(entry), y[m]) for m, entry in enumerate(adjugate.row(n))))
         for n in range(Z.cols)
@@ -211,12 +214,6 @@ def _term(value: Expr, powers: tuple[int, ...], words: list[Expr]) -> Expr:
     for word, exponent in zip(words, powers, strict=True):
         value = mul(value, power(word, Fraction(exponent))) if exponent else value
     return value
-
-
-def _beyond_rest(joint: Joint, n: int) -> Expr:
-    """Return x_r - Z^T x_0 of one of the states."""
-    rest = add(*(mul(member.shares[n], member.rest) for member in joint.members))
-    return add(Sym(joint.kept[n].store.state), neg(rest))
 
 
 # What is said of their states

@@ -16,7 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
 
@@ -28,9 +28,6 @@ from piezo_sym.run.guard import crossing, domain_error, rate_error
 from piezo_sym.run.inputs import Segment
 from piezo_sym.run.integrate import Tolerance, accepted
 from piezo_sym.run.system import DrivenModule
-
-if TYPE_CHECKING:
-    pass
 
 #: Absolute tolerances: this part of rtol times the scale of each state.
 ATOL_FACTOR = 1e-3

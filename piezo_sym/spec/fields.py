@@ -43,8 +43,9 @@ def _number(value: Any) -> float:
     return float(value)
 
 
-def _law_or_number(value: Any) -> str | float:
-    return value if isinstance(value, str) else _number(value)
+def _text_or(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Return what reads a value, but leaves a text as it is."""
+    return lambda value: value if isinstance(value, str) else read(value)
 
 
 def _listed(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -52,10 +53,6 @@ def _listed(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return lambda value: (
         tuple(map(read, value)) if isinstance(value, (list, tuple)) and value else read(value)
     )
-
-
-def _replacement(value: Any) -> str | float | tuple[float, ...]:
-    return value if isinstance(value, str) else _listed(_number)(value)
 
 
 def _one_or_list(item: Schema) -> Schema:
@@ -82,12 +79,12 @@ Values = Annotated[
 ]
 Replacement = Annotated[
     str | float | tuple[float, ...],
-    BeforeValidator(_replacement),
+    BeforeValidator(_text_or(_listed(_number))),
     WithJsonSchema(_one_or_list(NUMBER) | {"type": ["number", "string", "array"]}),
 ]
 Start = Annotated[
     str | float | tuple[str | float, ...],
-    BeforeValidator(_listed(_law_or_number)),
+    BeforeValidator(_listed(_text_or(_number))),
     WithJsonSchema(_one_or_list(LAW_OR_NUMBER)),
 ]
 Text = Annotated[StrictStr, StringConstraints(max_length=MAX_TEXT), AfterValidator(_plain)]

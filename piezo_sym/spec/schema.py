@@ -101,10 +101,9 @@ def _union() -> Schema:
         "type": "object",
         "required": ["kind"],
         "properties": {"kind": {"enum": list(KINDS)}},
-        "allOf": [{"if": _is_of(kind), "then": reference} for kind, reference in found.items()],
+        "allOf": [
+            {"if": {"properties": {"kind": {"const": kind}}, "required": ["kind"]}, "then": of_kind}
+            for kind, of_kind in found.items()
+        ],
         "anyOf": [*found.values(), True],
     }
-
-
-def _is_of(kind: str) -> Schema:
-    return {"properties": {"kind": {"const": kind}}, "required": ["kind"]}

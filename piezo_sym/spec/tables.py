@@ -131,16 +131,14 @@ def conditions(spec: Tables) -> tuple[Condition, ...]:
         left, right = (rename(side, _by_body(side, hot)) for side in (tree.left, tree.right))
         assumed.append(Condition(where, Cmp(tree.op, left, right)))
     found: dict[Cmp, Condition] = {}
-    for condition in [*assumed, *_needed(spec), *_not_negative(spec, hot, assumed)]:
+    needed = [
+        Condition(f"elements.{name}", need)
+        for name, element in spec.elements.items()
+        for need in element.row.form.requires(element, name)
+    ]
+    for condition in [*assumed, *needed, *_not_negative(spec, hot, assumed)]:
         found.setdefault(condition.tree, condition)
     return tuple(found.values())
-
-
-def _needed(spec: Tables) -> Iterator[Condition]:
-    for name, element in spec.elements.items():
-        yield from (
-            Condition(f"elements.{name}", need) for need in element.row.form.requires(element, name)
-        )
 
 
 def _not_negative(
@@ -197,7 +195,7 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     own = {word: bank for word in spec.parameters if (bank := single.get(word))}
     lanes |= own
     groups = [names(condition.tree) for condition in conditions(spec)]
-    mixed = {word for group in groups for word in group if _mixes(group, lanes)}
+    mixed = {n for g in groups if len({lanes[n] for n in g if n in lanes}) > 1 for n in g}
     return {word: bank for word, bank in own.items() if word not in mixed}
 
 
@@ -205,8 +203,3 @@ def initial_laws(spec: Tables) -> Iterator[tuple[str, Expr]]:
     """Yield the laws in initial values, each with its place."""
     for symbol in spec.initial:
         yield from ((f"initial.{symbol}", tree) for tree in starts(spec, symbol))
-
-
-def _mixes(group: tuple[str, ...], own: Mapping[str, str]) -> bool:
-    """Return whether names are of lanes of more than one bank."""
-    return len({own[word] for word in group if word in own}) > 1

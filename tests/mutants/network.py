@@ -98,12 +98,12 @@ a law that is not zero at zero is linear
   = affine
 ## network/joints
 rests of joined springs are subtracted
-  - return add(Sym(joint.kept[n].store.state), neg(rest))
-  + return add(Sym(joint.kept[n].store.state), rest)
+  - y.append(add(Sym(member.store.state), neg(rest)))
+  + y.append(add(Sym(member.store.state), rest))
   = rigid_couplings
 joined springs rest where the first does
-  - rest = add(*(mul(member.shares[n], member.rest) for member in joint.members))
-  + rest = joint.kept[n].rest
+  - rest = add(*(mul(other.shares[n], other.rest) for other in joint.members))
+  + rest = member.rest
   = rigid_couplings
 what follows adds no inertia
   - Z.T * sp.diag(*sizes) * Z

@@ -10,9 +10,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import final
 
-from piezo_sym.codegen.branches import with_branches
 from piezo_sym.codegen.c.order import LaneLoop, LoopStage, Write
-from piezo_sym.codegen.c.style import c_piece, c_style, is_constant, real_style, widened
+from piezo_sym.codegen.c.style import (
+    c_piece,
+    c_style,
+    is_constant,
+    real_style,
+    widened,
+    with_branches,
+)
 from piezo_sym.codegen.layout import terms
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.expressions.functions import RECORDS

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from piezo_sym.codegen.branches import with_branches
+from piezo_sym.expressions.calculus import add, div, mul, neg
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.text import (
     ATOM,
@@ -25,7 +25,7 @@ from piezo_sym.expressions.text import (
     enclose,
     piece,
 )
-from piezo_sym.expressions.tree import Expr
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Sym, rebuild
 from piezo_sym.expressions.tree import names as names_in
 
 #: Functions of ``real``, one number or one per lane: the head of a step has the first, real.h both.
@@ -120,6 +120,38 @@ def widened(value: Piece) -> str:
 def is_constant(value: Expr) -> bool:
     """Return whether an expression is made of numbers alone."""
     return not names_in(value)
+
+
+def with_branches(node: Expr) -> Expr:
+    """Return an expression with dead zones of short arguments as branches.
+
+    ``f*deadzone(z, w)`` is ``0 if abs(z) <= w else f*(z - copysign(w, z))``, for w >= 0: inside the
+    zone nothing is divided, and in a loop over lanes a compiler makes masks of such branches. What
+    is not a number stays so.
+    """
+    inner = rebuild(node, with_branches)
+    match inner:
+        case Call("deadzone", (z, w)) if _short(z) and _short(w):
+            beyond = add(z, neg(Call("copysign", (w, z))))
+            return If(ZERO, Cmp("<=", Call("abs", (z,)), w), beyond)
+        case Mul(left, If(then, condition, other)) if then == ZERO and _plain(left):
+            return If(ZERO, condition, mul(left, other))
+        case Mul(If(then, condition, other), right) if then == ZERO and _plain(right):
+            return If(ZERO, condition, mul(other, right))
+        case Div(If(then, condition, other), bottom) if then == ZERO and _plain(bottom):
+            return If(ZERO, condition, div(other, bottom))
+        case Neg(If(then, condition, other)) if then == ZERO:
+            return If(ZERO, condition, neg(other))
+    return inner
+
+
+def _short(node: Expr) -> bool:
+    return isinstance(node, Sym | Num) or (isinstance(node, Neg) and isinstance(node.arg, Sym))
+
+
+def _plain(node: Expr) -> bool:
+    """Return whether a factor holds no choice of its own."""
+    return not isinstance(node, If)
 
 
 def c_piece(node: Expr, style: Style) -> Piece:

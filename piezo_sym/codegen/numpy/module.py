@@ -235,11 +235,9 @@ class _Printer:
             second = self.states.position(entry.col)
             shift = "" if entry.row == entry.col else f" + ({second} - ({first}))"
             place = f"{self.index}, {self.index}{shift}"
-        yield from self._assign_entry(f"{self.out}[{place}]", joint, entry.value)
-
-    def _assign_entry(self, target: str, joint: str, value: Expr) -> list[str]:
-        lines = self._assign(target, numpy_text(value), value)
-        return [lines[0].replace(" = ", f" {joint} ", 1), *lines[1:]]
+        lines = self._assign(f"{self.out}[{place}]", numpy_text(entry.value), entry.value)
+        yield lines[0].replace(" = ", f" {joint} ", 1)
+        yield from lines[1:]
 
     def _spread(self, value: Expr, index: str) -> str:
         if bank_of(value, self.lanes) is None:

@@ -60,7 +60,10 @@ class Compiler:
 
 def compilers() -> Iterator[Compiler]:
     """Yield the compilers that there are and that answer, best first."""
-    for command in dict.fromkeys(_commands()):
+    commands = [*map(_found, (os.environ.get("CC", ""), "cc", "gcc", "clang"))]
+    if find_spec("ziglang") is not None:
+        commands.append((sys.executable, "-m", "ziglang", "cc"))
+    for command in filter(None, dict.fromkeys(commands)):
         if version := _version(command):
             yield Compiler(command, version)
 
@@ -69,13 +72,6 @@ def passed_by(taken: Compiler) -> str:
     """Return what ``$CC`` says if it is not the compiler that was taken; nothing otherwise."""
     wanted = os.environ.get("CC", "").strip()
     return wanted if wanted and _found(wanted) != taken.command else ""
-
-
-def _commands() -> Iterator[tuple[str, ...]]:
-    found = map(_found, (os.environ.get("CC", ""), "cc", "gcc", "clang"))
-    yield from filter(None, found)
-    if find_spec("ziglang") is not None:
-        yield (sys.executable, "-m", "ziglang", "cc")
 
 
 def _found(text: str) -> tuple[str, ...]:

@@ -62,7 +62,8 @@ def _unknown_reference(
     what = f"{quote(given)} is no {to} of this spec"
     if to == "input":
         meant = f"{nearest(given, known)}; or " if known else ""
-        unit = _input_unit(element)
+        ports = element.ports("")
+        unit = next(p.input_unit for p in ports if isinstance(p, Source | Exchange | HeatInput))
         remedy = f'{meant}declare it in [inputs]: {given} = {{ unit = "{unit}" }}'
         return SpecError(what, where, remedy=remedy)
     if known:
@@ -73,12 +74,6 @@ def _unknown_reference(
         remedy = f"add one to [elements]: {body}"
         return SpecError(what, where, "a body for the heat", remedy)
     return SpecError(what, where)
-
-
-def _input_unit(element: Element) -> str:
-    """Return the unit of the input that an element's kind takes."""
-    ports = element.ports("")
-    return next(p.input_unit for p in ports if isinstance(p, Source | Exchange | HeatInput))
 
 
 #: What a law may not name: it enters through inputs.
@@ -98,8 +93,11 @@ def check_laws(spec: Tables) -> None:
         for law in element.laws(name):
             words: Collection[str] = ChainMap(own, every) if law.mark.sees else spec.parameters
             _check_words(spec, law.tree, law.where, law.letters, words, name)
-            if {"T"} & {*law.letters} & {*names(law.tree)} and not one_body:
-                _check_body(element, law)
+            warm = "T" in law.letters and "T" in names(law.tree)
+            if warm and not one_body and not any(element.named("thermal_mass")):
+                remedy = "add to the element: temperature = '<name of a thermal_mass>'"
+                what = "'T' is the temperature of no body"
+                raise SpecError(what, law.where, "a body named", remedy)
             _check_letters(law, words, meanings(spec, law, hot))
     _check_initial(spec)
     for order in orders(spec):
@@ -111,13 +109,6 @@ def check_laws(spec: Tables) -> None:
         _check_words(spec, condition.tree, condition.where, (), words)
         _check_banks(condition, lanes)
         _check_temperature(spec, condition)
-
-
-def _check_body(element: Element, law: LawField) -> None:
-    """Refuse a temperature in a law of an element that names no body."""
-    if not any(element.named("thermal_mass")):
-        remedy = "add to the element: temperature = '<name of a thermal_mass>'"
-        raise SpecError("'T' is the temperature of no body", law.where, "a body named", remedy)
 
 
 def _check_letters(law: LawField, words: Collection[str], meant: Mapping[str, str]) -> None:

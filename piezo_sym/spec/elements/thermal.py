@@ -30,11 +30,6 @@ def _all_positive(element: Any, _: str) -> tuple[Cmp, ...]:
     return tuple(positive(Sym(word)) for word in words if word != element.letter)
 
 
-def _conductor(element: Any, name: str, _: Branch) -> tuple[Port, ...]:
-    first, second = element.between
-    return (Conductor(first, second, element.law("conductance"), f"s_{name}"),)
-
-
 def _thermocouple(element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
     """Return the coupling: a transformer between the branch and the temperatures."""
     first, second = map(body_node, element.bodies)
@@ -70,7 +65,9 @@ CONDUCTION = Form(
     doc="The heat flow q = conductance*(T_1 - T_2) [W] runs from the first body to the second; "
     "J couples their entropies, the driving force is T_1 - T_2 and "
     "gamma = conductance/(T_1 T_2).",
-    ports=_conductor,
+    ports=lambda element, name, _: (
+        Conductor(element.between[0], element.between[1], element.law("conductance"), f"s_{name}"),
+    ),
 )
 #: A current that carries entropy between two bodies: the effects of Seebeck and Peltier.
 THERMOCOUPLE = Form(
