@@ -1,28 +1,31 @@
 """Code generation: IPHS to program, program to text."""
 
-from typing import Protocol
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
 
-from piezo_sym.codegen import c, numpy
+from piezo_sym.codegen.c.head import c_header
+from piezo_sym.codegen.c.module import c_source
+from piezo_sym.codegen.c.step import c_step
+from piezo_sym.codegen.c.step_header import c_step_header
 from piezo_sym.codegen.collocation import Collocation, collocation_of
 from piezo_sym.codegen.lower import lower
 from piezo_sym.codegen.numpy.module import numpy_module
 from piezo_sym.codegen.program import MARK, Program
 
-
-class Backend(Protocol):
-    """A folder of this package that prints programs in one language."""
-
-    def files(self, program: Program, step: Collocation) -> dict[str, str]:
-        """Return the text of each file, by how its name ends after the model's."""
-
-
-#: Every language that is printed.
-BACKENDS: tuple[Backend, ...] = (numpy, c)
+Printer: TypeAlias = Callable[[Program, Collocation], str]
+#: The files of a module, by how their names end after the model's, and what prints each.
+PRINTERS: Mapping[str, Printer] = {
+    ".py": lambda program, _: numpy_module(program),
+    ".h": lambda program, _: c_header(program),
+    ".c": lambda program, _: c_source(program),
+    "_step.h": c_step_header,
+    "_step.c": c_step,
+}
 
 
 def printed(program: Program, step: Collocation) -> dict[str, str]:
     """Return the text of each file of a module, by how its name ends after the model's."""
-    return {end: text for b in BACKENDS for end, text in b.files(program, step).items()}
+    return {ending: write(program, step) for ending, write in PRINTERS.items()}
 
 
-__all__ = ["MARK", "collocation_of", "lower", "numpy_module", "printed"]
+__all__ = ["MARK", "PRINTERS", "collocation_of", "lower", "numpy_module", "printed"]

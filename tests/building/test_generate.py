@@ -9,14 +9,13 @@ import pytest
 
 from piezo_sym import Model, PiezoError, generate, load
 from piezo_sym.build import render
+from piezo_sym.codegen import PRINTERS
 from piezo_sym.errors import FileError, ProofError
 from tests.conftest import full_disk
 
 ROOT = Path(__file__).parents[2]
 COMMITTED = ROOT / "generated" / "piezo_stack" / "piezo_stack.py"
-FILES = ["piezo_stack.c", "piezo_stack.h", "piezo_stack.py", "piezo_stack_step.c"]
-FILES += ["piezo_stack_step.h"]
-FILES += ["proofs.json", "proofs.smt2"]
+FILES = [*sorted(f"piezo_stack{ending}" for ending in PRINTERS), "proofs.json", "proofs.smt2"]
 
 
 def text_of(model):

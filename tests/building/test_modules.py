@@ -18,6 +18,7 @@ from piezo_sym import (
     sweep,
 )
 from piezo_sym.cli import run
+from piezo_sym.codegen import PRINTERS
 from piezo_sym.errors import ProofError, RunError, SpecError, UsageError
 from piezo_sym.modules import ModuleWarning, module_of
 from piezo_sym.run.engine.engine import engine_of
@@ -170,7 +171,7 @@ def test_a_spec_written_otherwise_is_the_same_spec(model):
 def test_a_spec_not_generated_yet_goes_to_the_cache(mine, cache):
     module = module_of(mine)
     assert module.Parameters().M == 4e-3
-    names = ("mine.c", "mine.h", "mine.py", "mine_step.c", "mine_step.h")
+    names = sorted(f"mine{ending}" for ending in PRINTERS)
     (template,) = (path for path in files(cache) if path.suffix == ".json")
     texts = [path for path in sorted(files(cache)) if path != template]
     assert texts == [Path(module.__file__).with_name(name) for name in names]

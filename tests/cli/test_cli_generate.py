@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from piezo_sym.codegen import PRINTERS
+
 ROOT = Path(__file__).parents[2]
 NAME = "piezo_stack/piezo_stack.py"
 
@@ -33,8 +35,7 @@ def test_without_a_spec_all_shipped_ones_are_written(call, tmp_path):
 def test_the_folder_is_generated_if_nothing_is_said(call, spec_file, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     spec_file()
-    names = ("mine.py", "mine.h", "mine.c", "mine_step.h", "mine_step.c")
-    names += ("proofs.json", "proofs.smt2")
+    names = (*(f"mine{ending}" for ending in PRINTERS), "proofs.json", "proofs.smt2")
     said = "".join(f"{Path('generated/mine') / name}\n" for name in names)
     assert call("generate", "mine.toml") == (0, said, "")
 
