@@ -8,7 +8,6 @@ from piezo_sym.codegen.c.module import c_source
 from piezo_sym.codegen.c.step import c_step
 from piezo_sym.codegen.c.step_header import c_step_header
 from piezo_sym.codegen.collocation import Collocation, collocation_of
-from piezo_sym.codegen.julia import julia_rates
 from piezo_sym.codegen.lower import lower
 from piezo_sym.codegen.numpy.module import numpy_module
 from piezo_sym.codegen.program import MARK, Program
@@ -21,7 +20,6 @@ PRINTERS: Mapping[str, Printer] = {
     ".c": lambda program, _: c_source(program),
     "_step.h": c_step_header,
     "_step.c": c_step,
-    "_rhs.jl": lambda program, _: julia_rates(program),
 }
 
 
