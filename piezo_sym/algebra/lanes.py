@@ -18,18 +18,9 @@ from typing import Any, final
 import sympy as sp
 
 from piezo_sym.algebra.notation import Entries, matrix_latex, matrix_text
+from piezo_sym.algebra.notation import Slot as Slot
 from piezo_sym.algebra.sums import Lanes, outside_sums
 from piezo_sym.errors import UsageError, nearest, quote
-
-
-@final
-@dataclass(frozen=True)
-class Slot:
-    """A row or column: its label and, if it stands for one per lane, its bank."""
-
-    label: str
-    bank: str | None = None
-
 
 ONE_SLOT = (Slot(""),)
 

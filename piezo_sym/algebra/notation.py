@@ -7,7 +7,8 @@ which they are given, not in SymPy's; a bank's row or column stands for j = 1..r
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Protocol
+from dataclasses import dataclass
+from typing import final
 
 import sympy as sp
 
@@ -16,16 +17,13 @@ SPELLINGS = {"lam": r"\lambda"}
 Entries = Mapping[tuple[int, int], sp.Expr]
 
 
-class Label(Protocol):
-    """A row or column: its label, and its bank if it stands for one per lane."""
+@final
+@dataclass(frozen=True)
+class Slot:
+    """A row or column: its label and, if it stands for one per lane, its bank."""
 
-    @property
-    def label(self) -> str:
-        """The name."""
-
-    @property
-    def bank(self) -> str | None:
-        """The bank."""
+    label: str
+    bank: str | None = None
 
 
 def latex(expr: sp.Expr) -> str:
@@ -61,12 +59,12 @@ def joined(pieces: Iterable[str]) -> str:
     return total or "0"
 
 
-def slot_text(slot: Label) -> str:
+def slot_text(slot: Slot) -> str:
     """Return a slot's label, ``phi_j`` for a bank's."""
     return f"{slot.label}_j" if slot.bank else slot.label
 
 
-def matrix_latex(rows: Sequence[Label], cols: Sequence[Label], full: Entries, own: Entries) -> str:
+def matrix_latex(rows: Sequence[Slot], cols: Sequence[Slot], full: Entries, own: Entries) -> str:
     """Return a matrix as LaTeX; a bank's rows and columns stand for lane j, with dots around."""
     lines = []
     for r, row in enumerate(rows):
@@ -79,7 +77,7 @@ def matrix_latex(rows: Sequence[Label], cols: Sequence[Label], full: Entries, ow
     return "\\begin{bmatrix} " + " \\\\ ".join(lines) + " \\end{bmatrix}"
 
 
-def _dotted(cols: Sequence[Label], cells: Sequence[str], dots: str) -> list[str]:
+def _dotted(cols: Sequence[Slot], cells: Sequence[str], dots: str) -> list[str]:
     """Return the cells of a line, those of a bank's column with dots on both sides."""
     parts = [
         (dots, cell, dots) if col.bank else (cell,) for col, cell in zip(cols, cells, strict=True)
@@ -95,7 +93,7 @@ def _latex_cell(full: sp.Expr, own: sp.Expr | None) -> str:
     return same if full == 0 else joined((latex(full), same))
 
 
-def matrix_text(rows: Sequence[Label], cols: Sequence[Label], full: Entries, own: Entries) -> str:
+def matrix_text(rows: Sequence[Slot], cols: Sequence[Slot], full: Entries, own: Entries) -> str:
     """Return a matrix as an aligned grid; ``[j=k]`` marks an entry of equal lanes only."""
     grid = [["", *(slot_text(col) or "." for col in cols)]]
     for r, row in enumerate(rows):

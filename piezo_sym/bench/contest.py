@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
-from typing import final
+from typing import TypeAlias, final
 
 import numpy as np
 
@@ -29,27 +29,19 @@ class Spread:
     high: float
 
 
-@final
-@dataclass(frozen=True)
-class Times:
-    """Seconds per call, one for each round in which it was measured."""
-
-    seconds: tuple[float, ...]
-
-    @property
-    def spread(self) -> Spread:
-        """The median with its quartiles."""
-        return spread(self.seconds)
-
-    def over(self, other: Times) -> Spread:
-        """Return the ratio of these times to another call's, round by round."""
-        return spread([a / b for a, b in zip(self.seconds, other.seconds, strict=False)])
+#: Seconds per call, one for each round in which it was measured.
+Times: TypeAlias = tuple[float, ...]
 
 
 def spread(values: Sequence[float]) -> Spread:
     """Return the median of values with its quartiles."""
     low, median, high = np.quantile(values, [0.25, 0.5, 0.75])
     return Spread(float(median), float(low), float(high))
+
+
+def ratio(times: Times, others: Times) -> Spread:
+    """Return the ratio of times to another call's, round by round."""
+    return spread([a / b for a, b in zip(times, others, strict=False)])
 
 
 def interleaved(
@@ -66,7 +58,7 @@ def interleaved(
         for call, number, times in zip(calls, numbers, found, strict=True):
             if not times or (sum(times) + times[-1]) * number <= patience:
                 times.append(_seconds(call, number))
-    return tuple(Times(tuple(times)) for times in found)
+    return tuple(map(tuple, found))
 
 
 def _seconds(call: Callable[[], object], number: int) -> float:
@@ -141,7 +133,7 @@ def compared(
     """Return a row for each pair, every contestant timed in every round."""
     everyone = dict.fromkeys(c for pair in pairs for c in (pair.other, pair.ours) if c)
     found = zip(everyone, interleaved([c.call for c in everyone], rounds), strict=True)
-    times = {c: Times(tuple(seconds / c.per for seconds in one.seconds)) for c, one in found}
+    times = {c: tuple(seconds / c.per for seconds in one) for c, one in found}
     return tuple(_row(group, pair, times, measure) for pair in pairs)
 
 
@@ -149,12 +141,12 @@ def _row(group: str, pair: Pair, times: dict[Contestant, Times], measure: str) -
     other, ours = pair.other, pair.ours
     sides = (("its", other), ("our", ours))
     note = "; ".join(f"{whose} {side.note}" for whose, side in sides if side and side.note)
-    own = times[ours].spread
+    own = spread(times[ours])
     if other is None:
         return Comparison(group, "", ours.name, None, own, None, None, ours.error, measure, note)
-    ratio = times[other].over(times[ours])
-    found = group, other.name, ours.name, times[other].spread, own, ratio
-    return Comparison(*found, other.error, ours.error, measure, note)
+    found = group, other.name, ours.name, spread(times[other]), own
+    rounds = ratio(times[other], times[ours])
+    return Comparison(*found, rounds, other.error, ours.error, measure, note)
 
 
 def _duration(spread: Spread | None) -> str:

@@ -26,6 +26,7 @@ from piezo_sym.errors import NetworkError, listing, quote, with_article
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.kirchhoff import Laws
+from piezo_sym.network.nodes import reached
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.ports import DissipativePort
@@ -123,10 +124,7 @@ def _groups(M: LaneMatrix) -> Iterator[tuple[int, ...]]:
         near.setdefault(col, set()).add(row)
     left = sorted(near)
     while left:
-        group, grown = {left[0]}, {left[0]}
-        while grown:
-            grown = {other for k in grown for other in near[k]} - group
-            group |= grown
+        group = reached(left[:1], near)
         yield tuple(sorted(group))
         left = [k for k in left if k not in group]
 

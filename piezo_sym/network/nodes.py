@@ -5,7 +5,8 @@ Input: a `Circuit`.  Output: nothing, or one `NetworkError` that names the node 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
+from typing import TypeVar
 
 from piezo_sym.errors import NetworkError, listing, nearest, quote, with_article
 from piezo_sym.spec.circuit import LAST, Circuit, lane_ends
@@ -18,6 +19,8 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
+
+K = TypeVar("K", bound=Hashable)
 
 
 def is_reference(node: str) -> bool:
@@ -161,18 +164,18 @@ def _check_ground(found: list[tuple[str, Branch, PhysicalDomain]]) -> None:
     for _, (one, other), _ in found:
         beside.setdefault(one, []).append(other)
         beside.setdefault(other, []).append(one)
-    tied = _reached(list(REFERENCES), beside)
+    tied = reached(list(REFERENCES), beside)
     for element, (node, _), domain in found:
         if node not in tied:
-            near = sorted(n for n in _reached([node], beside) if not is_inner(n))
+            near = sorted(n for n in reached([node], beside) if not is_inner(n))
             what = f"nothing connects node '{node}' to '{domain.reference}'"
             expected = f"a path to '{domain.reference}', the {domain.name} reference"
             remedy = f"call one of these nodes '{domain.reference}': {listing(near)}"
             raise NetworkError(what, f"elements.{element}", expected, remedy)
 
 
-def _reached(start: list[str], beside: dict[str, list[str]]) -> set[str]:
-    """Return the nodes that branches connect to those of `start`, and these."""
+def reached(start: Iterable[K], beside: Mapping[K, Iterable[K]]) -> set[K]:
+    """Return what connections lead to from `start`, and that itself."""
     found, todo = set(start), list(start)
     while todo:
         new = [node for node in beside.get(todo.pop(), ()) if node not in found]

@@ -130,7 +130,8 @@ class Part:
         symbols, hot = states(self.model), temperatures(self.model)
         gone = {word for word, name in (*symbols.items(), *hot.items()) if name not in self.kept}
         starts = (start for name, start in self.model.initial.items() if name not in gone)
-        texts = (part for start in starts for part in _texts(start))
+        parts = (p for start in starts for p in (start if isinstance(start, tuple) else (start,)))
+        texts = (part for part in parts if isinstance(part, str))
         used = {word for text in texts for word in names(parse_law(text, "initial"))}
         used |= inputs_of(self.kept.values())
         return frozenset(gone | (inputs_of(self.model.elements.values()) - used))
@@ -177,11 +178,6 @@ class Part:
 def inputs_of(elements: Iterable[Element]) -> set[str]:
     """Return the inputs that elements name."""
     return {given for e in elements for _, given in e.named("input")}
-
-
-def _texts(start: Any) -> Iterator[str]:
-    parts = start if isinstance(start, tuple) else (start,)
-    return (part for part in parts if isinstance(part, str))
 
 
 def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any], str]]:

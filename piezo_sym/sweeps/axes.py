@@ -110,20 +110,16 @@ def read_values(
     """Return a target's values, one per point; raise `UsageError` at the first that is invalid."""
     if target.is_size:
         return tuple(whole(value, f"{where}[{n}]", 1) for n, value in enumerate(given))
-    if isinstance(given, np.ndarray) and given.ndim == 1 and given.dtype.kind in "iuf":
-        wrong = np.flatnonzero(~np.isfinite(given))
-        for n in wrong[:1]:
-            number(given[n].item(), f"{where}[{n}]")
-        return given.astype(float)
-    if all(is_number(value) for value in given):
-        return np.array([number(value, f"{where}[{n}]") for n, value in enumerate(given)])
-    return tuple(
-        read_value(target, value, f"{where}[{n}]", duration) for n, value in enumerate(given)
+    listed = given.tolist() if isinstance(given, np.ndarray) else given
+    found = tuple(
+        read_value(target, value, f"{where}[{n}]", duration) for n, value in enumerate(listed)
     )
+    numbers = all(isinstance(value, float) for value in found)
+    return np.array(found, dtype=float) if numbers else found
 
 
 def read_value(target: Target, value: object, where: str, duration: float) -> Value:
-    """Return one value that need not be a number: a signal, or one number per lane."""
+    """Return one value: a number, a signal, or one number per lane."""
     if is_number(value):
         return number(value, where)
     if target.kind == "inputs":
