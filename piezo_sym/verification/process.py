@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 
 #: Seconds for a system of up to SMALL elements, and for each element more.
 PATIENCE, MORE_PATIENCE, SMALL = 28.0, 1.0, 10
-#: Systems of fewer elements are examined sooner than a process is copied.
-FEWEST_BESIDE = 5
+#: Systems of fewer elements are read back sooner than a copy of a process pays: it takes 0.2 s of
+#: work, as every page that it touches is copied.
+FEWEST_BESIDE = 12
 #: Said where a process has ended.
 ENDED = "not decided: the process ended, for want of memory or by a fault"
 #: The line after the last message on a subject.
