@@ -121,7 +121,7 @@ def test_every_curve_has_a_name_and_a_look_of_its_own():
     assert len(areas) == 22
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("lanes", [2, 8])
 def test_a_legend_covers_no_curve(lanes):
     figure = plot(actuator(parameters={"hysteron_count": lanes}, times=11))

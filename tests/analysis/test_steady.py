@@ -293,6 +293,7 @@ def test_a_neutral_motion_is_no_obstacle():
     assert found.temperature == pytest.approx(298.166, abs=1e-3)
 
 
+@pytest.mark.long
 def test_equal_hysterons_settle_as_one():
     def settles(**parameters):
         return periodic_steady_state(

@@ -43,6 +43,7 @@ def test_a_peer_solves_the_problem(brief, peer, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []  # nothing is left behind
 
 
+@pytest.mark.some(8)
 @pytest.mark.parametrize("spec", ["a1_two_bodies", "a2_oscillator", "a5_thermistor"])
 @pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
 def test_a_peer_solves_smooth_problems(peer, spec):
@@ -135,6 +136,7 @@ def test_rates_stand_beside_those_written_by_hand(case_p):
     assert max(errors) <= 1e-10
 
 
+@pytest.mark.long
 def test_batches_stand_beside_those_written_by_hand(case_p):
     part = batch_rows(replace(case_p, duration=1e-2), SMALL)
     groups = {f"batch of {SMALL.columns}, {size} states each" for size in (6, 68)}
@@ -149,7 +151,7 @@ def test_a_sample_sees_a_wrong_rate(case_p):
     assert sample.error(rates) > 1e-3  # the voltage is another one
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("lanes", [1, 2, 65])
 def test_batches_by_hand_are_right_for_any_size(case_p, lanes):
     problem = problem_of(case_p.model, {}, 1e-3, {"hysteron": lanes})

@@ -34,6 +34,7 @@ def file(out):
     return out / "piezo_stack" / "piezo_stack.py"
 
 
+@pytest.mark.long
 def test_committed_files_are_what_the_specs_give():
     assert drift(shipped_models(), ROOT / "generated", complete=True) == ()
 

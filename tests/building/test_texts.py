@@ -49,7 +49,7 @@ def test_a_text_in_the_head_adds_no_code(spec, words):
     assert ast.get_docstring(ast.parse(text)).count("word") >= 2
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("words", HOSTILE)
 def test_a_text_in_a_record_is_kept_as_it_is(spec, module_from, words):
     spec["parameters"]["M"]["doc"] = words

@@ -119,7 +119,7 @@ def test_a_list_of_values_is_edited_lane_by_lane(spec):
     assert module_of(path).Parameters().L == (1e-3, 3e-3)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("old", "new"),
     [

@@ -21,6 +21,7 @@ def out(tmp_path, monkeypatch):
     return tmp_path / "out"
 
 
+@pytest.mark.long
 def test_without_a_spec_all_shipped_ones_are_written(call, tmp_path):
     answer = call("generate", "--out", tmp_path)
     assert (answer.code, answer.err) == (0, "")

@@ -45,7 +45,6 @@ def steady(folder):
     return columns(folder / "figure_4.csv", "L")
 
 
-@pytest.mark.long
 def test_fifteen_files_are_written(folder):
     names = {f"{name}.{ending}" for name in NAMES for ending in ("csv", "png", "svg")}
     assert {path.name for path in folder.iterdir()} == names

@@ -230,6 +230,7 @@ def test_rates(case):
         assert np.allclose(module.rhs(x, U, module.Parameters()), rates(x), rtol=1e-12, atol=1e-13)
 
 
+@pytest.mark.some(3)
 def test_jacobian(case):
     _, module, _ = case
     p, h = module.Parameters(), 1e-6

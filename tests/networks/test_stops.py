@@ -257,7 +257,7 @@ def block_on(n, rtol):
     return simulate(model("block"), rtol=rtol, parameters=given, **how)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5, 1e-7])
 def test_steps_do_not_grow_with_the_number_of_stops(rtol):
     """A yield is located where it matters: of many, each is a small part of the mass's force."""

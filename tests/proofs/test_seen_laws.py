@@ -88,6 +88,7 @@ def test_a_law_whose_sign_fails_is_not_proved(factor):
             assert value(law, found.witness) < 0
 
 
+@pytest.mark.long
 def test_few_of_them_stay_open():
     verdicts = [row(rows(f, f), "passive", "wire").verdict for f in WIRES[:12]]
     assert verdicts == [Verdict.REFUTED] * 12

@@ -100,6 +100,7 @@ NEAR_ZERO = st.sampled_from(
 )
 
 
+@pytest.mark.long
 @steady
 @given(st.lists(st.tuples(st.integers(-6, 6), NEAR_ZERO), min_size=2, max_size=4))
 def test_verdicts_on_sums_that_vanish_at_zero_are_true(terms):

@@ -202,7 +202,7 @@ needs_proc = pytest.mark.parametrize(
 )
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @needs_proc
 def test_no_solver_outlives_who_asked(last, stop):
     asking = subprocess.Popen(

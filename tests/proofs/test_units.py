@@ -214,6 +214,7 @@ def factors():
         yield pytest.param(*pair, marks=[pytest.mark.long] if n % 7 else [])
 
 
+@pytest.mark.some(8)
 @pytest.mark.parametrize(("name", "factor"), [*factors()])
 def test_any_other_unit_of_a_parameter_or_input_is_refuted(name, factor):
     """Without exception: piezo_stack has no parameter or input whose unit cannot matter."""

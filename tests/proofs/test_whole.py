@@ -66,7 +66,7 @@ UNTOLD = (
 )
 
 
-@pytest.mark.some(16)
+@pytest.mark.some(4)
 @pytest.mark.parametrize("law", sampled(ACTIVE))
 def test_an_active_law_is_refuted(law):
     outcome = decided(law)

@@ -156,6 +156,7 @@ def python(compiler, *words):
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("module", "compiler"),
     [

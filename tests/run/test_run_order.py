@@ -44,7 +44,7 @@ def orders(errors):
     return -np.diff(np.log2(errors))
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("spec", "duration", "longest", "options"), SMOOTH, ids=[Path(row[0]).stem for row in SMOOTH]
 )
