@@ -29,7 +29,6 @@ def states(frequency):
     )
 
 
-@pytest.mark.long
 def test_there_is_one_jump_and_it_goes_up(found):
     (jump,) = found.jumps
     assert jump.upward
@@ -112,6 +111,7 @@ def test_the_example_of_the_help_gives_what_it_says(documented):
     assert len(example.examples) > 1
 
 
+@pytest.mark.long
 def test_a_drive_without_jumps_has_none():
     """A tenth of the voltage: heat a hundredth, and no fold within reach."""
     found = steady_branches(

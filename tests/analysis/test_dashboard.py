@@ -137,6 +137,7 @@ def test_a_legend_covers_no_curve(lanes):
         )
 
 
+@pytest.mark.long
 def test_the_name_of_an_axis_is_no_longer_than_its_panel():
     figure = plot(actuator(times=11, outputs="all"))
     assert "V_in, capacitor.effort, ... [V]" in labels(figure)
@@ -155,6 +156,7 @@ def test_the_only_curve_of_a_panel_is_named_once():
     assert names(panel(alone, "heat released")) == ["damper"]
 
 
+@pytest.mark.long
 def test_numbers_of_axes_have_no_offset():
     run = actuator(times=11, t0=1000.0)
     figure = plot(run.assign(T_body=298.15 + 1e-6 * run.time))
@@ -166,6 +168,7 @@ def test_numbers_of_axes_have_no_offset():
     assert all(999.9 < float(number) < 1000.1 for number in numbers)
 
 
+@pytest.mark.long
 def test_several_bodies():
     figure = plot(simulate(f"{SPECS}/a1_two_bodies.toml", duration=5))
     assert len(panel(figure, "T_hot, T_cold").lines) == 2

@@ -88,7 +88,7 @@ def test_the_legend_and_texts_cover_no_curve(drawn):
             assert not np.any(inside.all(axis=1)), line.get_label()
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 def test_files_are_the_same_in_every_run(drawn, tmp_path):
     figure, data, _ = drawn
     paths = [style.save(figure.draw(data), data, tmp_path / n, figure.name) for n in ("a", "b")]

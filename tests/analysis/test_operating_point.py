@@ -27,6 +27,7 @@ def test_the_actuator_rests_where_its_forces_balance() -> None:
     assert np.abs(found.initial["phi"]).max() < 1e-15
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("volts", [0.0, 60.0])
 def test_the_starter_rests_though_its_entropy_starts_at_zero(volts: float, tmp_path: Path) -> None:
     spec = tmp_path / "first.toml"

@@ -98,7 +98,7 @@ def test_any_input_that_repeats(heater, wave, mean_square):
     assert found.temperature == pytest.approx(T_E + mean_square / (R * LAM), rel=2e-5)
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("turns", [2, 100, 512, 1024])
 def test_a_drive_of_many_turns_a_period_is_not_overlooked(heater, turns):
     """256 steps, 512 too, would look at a sine of 512 turns at its zeros alone."""
@@ -157,7 +157,7 @@ def test_heat_that_no_one_takes_away_has_no_steady_state(module):
         steady.periodic_steady_state(closed, inputs={"V": sine(V, F)}, frequency=F)
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("L", "frequency", "expected", "tolerance"),
     [
@@ -268,6 +268,7 @@ def test_another_solver_finds_the_same_orbit(at_50, which):
         assert np.abs(run[name].values[-1] - state.initial[name]).max() < 2e-6 * size
 
 
+@pytest.mark.long
 def test_a_tiny_heat_capacity_is_no_obstacle(module):
     small = module(HEATER.replace("value = 0.02", "value = 1e-7"))
     found = steady.periodic_steady_state(small, inputs={"V": 20.0}, frequency=1.0, rtol=1e-3)

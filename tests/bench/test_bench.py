@@ -42,6 +42,7 @@ def report():
     return bench(load("piezo_stack"), duration=2e-3, rounds=1)
 
 
+@pytest.mark.long
 def test_every_group_compares_numpy_and_c_with_lambdified_sympy(report):
     assert report.left_out == ()
     pairs = {(row.group, row.other, row.ours) for row in report.rows}

@@ -75,6 +75,7 @@ def broken(*_):
     raise TypeError("cannot\ndo this")
 
 
+@pytest.mark.long
 def test_a_peer_that_fails_is_left_out(case_p):
     peers = (LSODA, replace(LSODA, name="first", solver=broken, rates=broken))
     brief = replace(case_p, duration=1e-3)
@@ -109,6 +110,7 @@ def test_another_problems_reference_is_confirmed_by_lsoda(case_p):
     assert "LSODA" in exact.line
 
 
+@pytest.mark.long
 def test_runs_stand_at_equal_error(case_p):
     part = run_rows("run", replace(case_p, duration=5e-3), 1e-5, SMALL, independent=False)
     tuned = [row for row in part.rows if "tolerance" in row.note]

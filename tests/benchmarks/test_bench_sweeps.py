@@ -30,6 +30,7 @@ def family(problem):
     return family_of(problem, SMALL.members)
 
 
+@pytest.mark.long
 def test_a_family_varies_the_inductance_around_its_value(family):
     assert family.name == "L"
     assert family.values[[0, 5, -1]] == pytest.approx([5e-4, 1e-3, 2e-3])

@@ -58,6 +58,7 @@ def test_a_step_costs_in_proportion_to_the_hysterons():
     assert ratio <= MOST
 
 
+@pytest.mark.long
 def test_ten_thousand_hysterons_run():
     options = {"inputs": {"V_in": sine(100, 1000)}, "duration": 1e-3, "times": 11}
     found = simulate("piezo_stack", parameters=distributed(10_000), **options)

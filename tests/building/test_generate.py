@@ -50,6 +50,7 @@ def test_a_file_that_cannot_be_replaced_is_named(model, tmp_path):
     assert sorted(p.name for p in path.parent.iterdir()) == FILES
 
 
+@pytest.mark.long
 def test_a_full_disk_leaves_the_old_file(model, tmp_path):
     path, *_ = generate(model, tmp_path)
     path.write_text("old")

@@ -111,7 +111,7 @@ def test_other_names_give_the_same_numbers(spec, model, module_from, names):
         np.testing.assert_allclose(other[name], expected, rtol=1e-13, err_msg=name)
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("names", [ONE, TWO, THREE], ids=["one", "two", "three"])
 def test_other_names_give_the_same_rates_of_a_large_batch(spec, model, module_from, names):
     x, u = states_and_inputs(20_001)

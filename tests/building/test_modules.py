@@ -69,7 +69,7 @@ def test_code_in_the_working_folder_is_never_executed(model):
     assert not Path("executed").exists()
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("ending", [".c", ".h", "_step.c", "_step.h"])
 def test_an_edited_text_of_c_is_not_compiled(model, ending):
     path, *_ = generate(model)
@@ -134,6 +134,7 @@ def test_what_is_generated_all_the_same_runs_and_says_so(unproved):
     assert result.attrs["proofs"].startswith("NOT PROVED (passive REFUTED")
 
 
+@pytest.mark.long
 def test_what_consumes_entropy_is_run_by_scipy_alone(unproved):
     generate(load(unproved), allow_unproved=True)
     run = {"parameters": {"d": -1.0}, "inputs": {"V_in": 1.0}, "duration": 1e-4, "times": 2}
@@ -146,6 +147,7 @@ def test_what_consumes_entropy_is_run_by_scipy_alone(unproved):
         assert simulate(unproved, **run, method="LSODA").heat_damper[-1] < 0
 
 
+@pytest.mark.long
 def test_the_command_says_that_a_run_is_not_proved(unproved, capsys):
     generate(load(unproved), allow_unproved=True)
     assert run(["simulate", "mine.toml", "--duration", "1e-4"]) == 0
@@ -229,7 +231,7 @@ def test_a_model_edited_in_python_is_simulated_as_edited(spec):
     assert result.sizes["hysteron"] == 3
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("text", ["def (", "import no_such_library", "x = y", "x = 1"])
 def test_a_broken_module_in_the_working_folder_does_not_matter(model, text):
     path, *_ = generate(model)

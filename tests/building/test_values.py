@@ -100,6 +100,7 @@ def test_an_edited_module_is_what_the_edited_spec_generates(spec):
         assert (folder / f"mine{ending}").read_text(encoding="utf-8").startswith(text)
 
 
+@pytest.mark.long
 def test_a_damaged_template_is_made_again(spec, cache):
     spec["model"]["name"] = "mine"
     path = written(spec)

@@ -73,6 +73,7 @@ def test_an_information_row_does_not_decide(call, monkeypatch):
     assert "not confirmed odd hysteron" in answer.err
 
 
+@pytest.mark.long
 def test_a_checker_that_ends_without_rows_confirms_nothing(call, monkeypatch, tmp_path):
     for code, said in ((2, "bad input: no table"), (0, ""), (-11, "confirmed skew")):
         done = subprocess.CompletedProcess([], code, said, "")

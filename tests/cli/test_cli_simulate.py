@@ -395,7 +395,7 @@ def test_a_run_that_stops_leaves_a_file_and_says_so(refused, spec_file, tmp_path
         assert float(partial.time[-1]) == pytest.approx(0.0304)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("words", "reader", "written"),
     [

@@ -1,6 +1,7 @@
 """A table of 64 knots in generated code, NumPy's and C's, against NumPy's own interpolation."""
 
 import numpy as np
+import pytest
 
 from piezo_sym.spec.load import parse
 from tests.proofs.test_tables import spec
@@ -23,6 +24,7 @@ def interpolated(v):
     return np.interp(v, X, Y) + ends
 
 
+@pytest.mark.long
 def test_rates_and_slopes_are_those_of_the_interpolation(tmp_path):
     module, engine = made(parse(spec(f"F*table(v/a, {KNOTS})")), tmp_path)
     x, p = np.zeros((2, len(SPEEDS))), module.Parameters()

@@ -90,6 +90,7 @@ SUM = st.builds("{} + {}".format, TERM, TERM)
 CHOICE = st.builds(lambda a, b, z: f"{a} if {z} > 0 else {b}", TERM, TERM, PLACES)
 
 
+@pytest.mark.long
 @settings(max_examples=8, deadline=None, derandomize=True)
 @given(st.one_of(TERM, SUM, CHOICE))
 def test_no_law_is_proved_of_which_quadrature_says_otherwise(law):

@@ -20,6 +20,7 @@ NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 #: Not executed in the fast tier: what they show has tests of its own, the claims and figures of the
 #: paper, banks beside NumPy, sweeps beside single runs, devices beside closed forms.
 LONG = {
+    "03-proofs",
     "04-figures",
     "05-many-hysterons",
     "06-paper-and-software",

@@ -71,6 +71,7 @@ def test_an_active_law_is_refuted_by_a_number(text):
     assert len(str(decision.witness)) < 12
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize("text", split(UNTOLD))
 def test_what_is_not_told_is_open_and_says_where(text):
     decision = decide_sign(power_of(text), "x")
@@ -79,6 +80,7 @@ def test_what_is_not_told_is_open_and_says_where(text):
     assert "x = " in decision.reason or "no value at" in decision.reason
 
 
+@pytest.mark.long
 @steady
 @given(laws(9), st.booleans())
 def test_verdicts_on_random_laws_are_true(tree, times_x):

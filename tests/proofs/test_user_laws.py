@@ -50,6 +50,7 @@ def test_a_continuous_law_is_proved(law):
         assert found[name, "damper"].verdict is Verdict.PROVED
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("law", JUMPING)
 def test_a_law_that_jumps_is_refuted(law):
     row = rows(law)["continuous", "damper"]
@@ -106,7 +107,7 @@ HUGE = (
 )
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("law", HUGE)
 def test_towers_of_exponentials_end(law):
     assert rows(law)["passive", "damper"].verdict is not Verdict.PROVED

@@ -101,6 +101,7 @@ def test_the_error_of_a_run_is_about_rtol(chain):
     assert np.median(found) <= 3
 
 
+@pytest.mark.long
 def test_nobody_pays_for_much_more_than_rtol():
     """The lower side: steps are about as long as rtol allows, at every rtol."""
     runs = [list(errors(chain)) for chain in DAMPED.values()]

@@ -34,6 +34,7 @@ def test_case_p(case_p):
         assert error < 1e-6, name
 
 
+@pytest.mark.some(1)
 def test_case_p_closes_its_ledger(case_p):
     gross = np.abs(case_p.supplied_supply).max() + np.abs(case_p.supplied_ambient).max()
     assert gross > 20

@@ -71,7 +71,7 @@ def test_stages_in_vectors_have_no_warning(module, compiler, tmp_path):
         assert called([*COMPILERS[compiler], *flags], tmp_path) == ""
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-5}], ids=str)
 def test_runs_are_the_same_whoever_compiles(module, compiler, accuracy, monkeypatch):

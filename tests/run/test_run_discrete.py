@@ -101,6 +101,7 @@ def test_a_jump_of_an_input_lands_on_a_step():
     assert np.allclose(found.q, slow.q, rtol=0, atol=2e-6 * float(np.abs(slow.q).max()))
 
 
+@pytest.mark.long
 def test_thousands_of_hysterons_run():
     found = run(inputs=CASE_P, step=1e-4, duration=0.01, parameters={"hysteron_count": 10_000})
     assert found.sizes["hysteron"] == 10_000

@@ -143,6 +143,7 @@ def test_a_charge_that_follows_at_once_is_right_from_its_start():
         assert error(CIRCUIT, rtol, wanted, **CHARGE) <= 20
 
 
+@pytest.mark.long
 def test_diodes_that_a_long_step_carries_beyond_their_bend_come_back():
     wanted = exact(DIODES, **TURNED)
     for rtol in RTOLS:

@@ -210,7 +210,7 @@ def test_a_choice_that_is_passed_by_is_one_line(module, tmp_path, monkeypatch, n
     assert {run.attrs["method"] for run in runs} == {"discrete_gradient"}
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("chosen", ["", " ", "cc", "gcc -pipe"])
 def test_a_choice_that_is_taken_says_nothing(module, monkeypatch, chosen):
     monkeypatch.setenv("CC", chosen)

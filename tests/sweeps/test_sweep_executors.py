@@ -200,7 +200,7 @@ sweep("piezo_stack", over=over, inputs={{"V_in": sine(100, 100)}}, duration={dur
 """
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("duration", "method", "threads"),
     [

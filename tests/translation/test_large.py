@@ -33,7 +33,7 @@ def long_chain():
     return examined(chain(24))
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("language", TEXTS)
 def test_a_chain_of_24_is_proved_and_a_mutant_of_it_is_refuted(long_chain, language):
     texts, known = long_chain
