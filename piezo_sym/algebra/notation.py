@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import final
+from typing import Any, final
 
 import sympy as sp
 
@@ -29,12 +29,33 @@ class Slot:
 def latex(expr: sp.Expr) -> str:
     """Return one expression as LaTeX."""
     names = {s: symbol_latex(s.name) for s in expr.free_symbols}
-    return str(sp.latex(expr, symbol_names=names))
+    return str(sp.latex(_with_magnitudes(expr, sp.Abs), symbol_names=names))
 
 
 def text(expr: sp.Expr) -> str:
     """Return one expression as plain text."""
-    return str(sp.sstr(expr))
+    return str(sp.sstr(_with_magnitudes(expr, sp.Function("abs"))))
+
+
+def _with_magnitudes(expr: sp.Expr, magnitude: Any) -> sp.Expr:
+    """Return an expression with ``abs`` and ``sign`` in place of the branches they stand for."""
+    known = {choice: _named(choice, magnitude) for choice in expr.atoms(sp.Piecewise)}
+    return expr.xreplace({choice: named for choice, named in known.items() if named is not None})
+
+
+def _named(choice: sp.Piecewise, magnitude: Any) -> sp.Expr | None:
+    """Return a choice as the magnitude or the sign of something, if it is one."""
+    (first, condition), (second, other), *last = choice.args
+    if not isinstance(condition, sp.StrictGreaterThan | sp.GreaterThan):
+        return None
+    x = condition.lhs - condition.rhs
+    if not last and other == sp.true and sp.expand(first - x) == sp.expand(second + x) == 0:
+        return magnitude(x, evaluate=False)
+    signs = isinstance(condition, sp.StrictGreaterThan) and [*map(tuple, last)] == [(0, True)]
+    turned = isinstance(other, sp.StrictLessThan) and sp.expand(other.lhs - other.rhs - x) == 0
+    if signs and turned and (first, second) == (1, -1):
+        return sp.sign(x, evaluate=False)
+    return None
 
 
 def symbol_latex(name: str) -> str:
