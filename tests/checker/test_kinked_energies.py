@@ -41,6 +41,18 @@ def test_an_energy_changed_on_one_side_is_not_confirmed(law, old, new):
     assert ("energy", "") in refused(text, proofs)
 
 
+@pytest.mark.parametrize("pinned", ["q >= s", "q >= p", "q*M >= s*M"])
+def test_a_domain_that_holds_a_state_has_no_edges(pinned):
+    """There each branch is a single value of the state, and none may go without a look."""
+    domain = f'"n > 0", "{pinned}", "{pinned.replace(">", "<")}"]'
+    text = TEXT.replace("LAW", "k*q").replace('"n > 0"]', domain).replace("0.2", "0.0")
+    proofs = stated(text)
+    assert ("energy", "") not in refused(text, proofs)
+    at = "p" if "p" in pinned else "s"
+    proofs["system"]["energy"] += f" + (k*(q - {at}) if q >= {at} else 2*k*(q - {at}))"
+    assert ("energy", "") in refused(text, proofs)
+
+
 @pytest.mark.parametrize("energy", BAD_ENERGIES[::2])
 def test_energies_that_jump_or_lack_a_value_are_not_confirmed(energy):
     text = TEXT.replace('force = "LAW"', f'energy = "{energy}"')
