@@ -146,7 +146,8 @@ def derivative(node: Node, by: Any) -> Node:
     """Return the derivative of a law by a symbol, branch by branch; of one lane, if it is a sum."""
     if by not in symbols(node) or node.op == "sym":
         return num(int(node.op == "sym" and node.value == by))
-    node = unkinked(node) if node.op in KINKS else node
+    if node.op in KINKS:  # of one with kinks inside, as saturate, once more
+        return derivative(unkinked(node), by)
     inner = tuple(arg if arg.op == "cmp" else derivative(arg, by) for arg in node.args)
     x, z, dx, dz = node.args[0], node.args[-1], inner[0], inner[-1]
     if node.op in ("+", "if", "sum"):

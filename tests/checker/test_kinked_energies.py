@@ -11,6 +11,7 @@ CONFIRMED = (
     "F_0*sign(q)*abs(q/r)**(3/2)",
     "F_0*abs((q - s)/r)**n*sign(q - s)",
     "k*q*abs(q/r)**n",
+    "k*saturate(q, r)",
 )
 #: The energy found, a part of it, and what is put in its place.
 WRONG = (
@@ -29,6 +30,13 @@ def test_energies_are_confirmed_on_each_branch(law):
     text = TEXT.replace("LAW", law)
     rows = refused(text, stated(text))
     assert not rows
+
+
+def test_a_spec_with_an_energy_of_saturate_is_read():
+    """It is a kink inside a kink."""
+    text = TEXT.replace('force = "LAW"', 'energy = "k*(q - saturate(q, r)/2)*saturate(q, r)"')
+    rows = refused(text, stated(text))
+    assert ("welldef", "spring") not in rows
 
 
 @pytest.mark.parametrize(("law", "old", "new"), WRONG)
