@@ -7,6 +7,7 @@ import signal
 import sys
 from collections import defaultdict
 from contextlib import contextmanager
+from zlib import crc32
 
 import pytest
 from hypothesis import settings
@@ -20,16 +21,19 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 @pytest.hookimpl(tryfirst=True)  # before `-m "not long"` looks at marks
 def pytest_collection_modifyitems(items):
-    """Keep ``some(n)`` cases of a test in the fast tier, spread over all; the others are long."""
+    """Keep ``some(n)`` cases of a test in the fast tier; the others are long.
+
+    They are chosen by their names: of all tests of the same models, the same ones are kept, and
+    what is compiled for one serves the others.
+    """
     cases = defaultdict(list)
     for item in items:
         if mark := item.get_closest_marker("some"):
             cases[item.nodeid.split("[")[0], mark.args[0]].append(item)
     for (_, n), found in cases.items():
-        kept = {k * (len(found) - 1) // max(1, n - 1) for k in range(n)}
-        for k, item in enumerate(found):
-            if k not in kept:
-                item.add_marker(pytest.mark.long)
+        found.sort(key=lambda item: crc32(item.name.partition("[")[2].encode()))
+        for item in found[n:]:
+            item.add_marker(pytest.mark.long)
 
 
 #: Models of which tests take so many steps that optimization pays.

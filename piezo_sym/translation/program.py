@@ -162,9 +162,9 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
 
 def _is_square_sum(value: Value, given: tuple[Need, ...], need: Need) -> bool:
     """Return whether a value is positive: squares of names, one of which laws divide by."""
-    field, other = value.field, {"nonzero", "positive"}
+    field, kinds = value.field, {"nonzero", "positive"}
     nonzero = {
-        g.value for g in given if g.kind in other and g.path == field.one and _covers(g, need)
+        g.value for g in given if g.kind in kinds and g.path == field.one and _covers(g, need)
     }
     squares = all(
         c > 0 and all(field.gens[g].kind == "name" and e > 0 and e % 2 == 0 for g, e in mono)

@@ -59,6 +59,7 @@ def test_explicit_rates_are_the_modules(problem, path, number):
     assert np.all(np.abs(at(problem.rates, problem, x) - expected) <= 1e-9 * size)
 
 
+@pytest.mark.some(8)
 def test_scaled_rates_are_those_of_scaled_states(problem, path):
     x, _ = drawn(problem, path, 0)
     scale = np.random.default_rng(1).uniform(0.1, 3, x.size)

@@ -240,6 +240,7 @@ def test_jacobian(case):
         assert np.allclose(module.jacobian(x, U, p), np.transpose(slopes), rtol=1e-6, atol=1e-7)
 
 
+@pytest.mark.some(3)
 def test_power_balance(case):
     _, module, _ = case
     p, h = module.Parameters(), 1e-5

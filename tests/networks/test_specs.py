@@ -61,7 +61,7 @@ def test_it_is_proved_for_every_size_and_written_out(model, exact):
     report.raise_if_not_proved()
 
 
-@pytest.mark.some(12)
+@pytest.mark.some(4)
 def test_its_module_agrees_with_sympy(model, exact):
     module, p = module_of(model), module_of(model).Parameters()
     slopes = sp.Matrix(exact.rhs).jacobian(list(exact.x))
@@ -91,6 +91,7 @@ def test_its_module_is_the_same_text_again(model):
     assert text == numpy_module(lower(derive(parse(model.to_toml())), "verdict"))
 
 
+@pytest.mark.some(8)
 def test_it_runs(model):
     run = simulate(model, duration=1e-3, rtol=1e-9)
     gross = np.abs(run.energy).max()

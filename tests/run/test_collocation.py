@@ -68,7 +68,7 @@ def test_a_short_step_goes_where_the_rates_lead(spec, stages):
     assert error <= 1e-13 * np.abs(x).max() + (1e-6 if stages == 1 else 1e-9) * moved_by
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(8)
 @pytest.mark.parametrize("spec", [s for s in ALL if Path(s).stem != "dry_friction"])
 def test_newtons_method_has_the_right_matrix(spec):
     """A step of a part of the fastest time constant: with a wrong entry it would take a dozen."""
@@ -118,6 +118,7 @@ def test_case_p_is_as_accurate_as_asked(rtol, stages):
     assert np.diff(produced, axis=1).min() >= 0
 
 
+@pytest.mark.some(8)
 @pytest.mark.parametrize("spec", ALL, ids=NAMES)
 def test_balances_close_at_every_sample(spec):
     duration = {"a5_thermistor": 2e-3, "a10_maxwell_slip": 1e-2}.get(Path(spec).stem, 0.05)
