@@ -12,15 +12,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
-from piezo_sym.codegen import MARK, collocation_of, lower, printed
-from piezo_sym.codegen.program import blank
+from piezo_sym.codegen.program import MARK
+from piezo_sym.codegen.template import template_of
 from piezo_sym.derivation import derive
 from piezo_sym.errors import DriftError, UsageError, quote
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
-from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import Report, Verdict, proofs_json, smt2
 from piezo_sym.run.engine.c_sources import standalone_step
-from piezo_sym.spec.checks.values import are_all_margins
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.source import shipped
@@ -62,13 +60,15 @@ def render(
     A model that is not proved is refused, unless `allow_unproved`; `report` is its verdicts, if
     they are known already.
     """
-    with examining(model, report) as examined:
-        found = blank_texts(derive(model))
-        report = examined()
+    if report is None:
+        with examining(model) as found:
+            template, report = found.template(), found.report()
+    else:
+        template = template_of(derive(model))
     if not allow_unproved:
         report.raise_if_not_proved()
-    found = replace(found, verdict=verdict_line(report))
-    texts = found.filled(model.flatten().model_dump())
+    template = replace(with_standalone_step(template, model.name), verdict=verdict_line(report))
+    texts = template.filled(model.flatten().model_dump())
     made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
     return {
         **{f"{model.name}/{model.name}{ending}": text for ending, text in texts.items()},
@@ -77,13 +77,10 @@ def render(
     }
 
 
-def blank_texts(iphs: IPHS) -> Template:
-    """Return the texts of a system's module, with places for the values of its spec."""
-    texts = printed(blank(lower(iphs, "")), collocation_of(iphs))
-    texts["_step.c"] += standalone_step(iphs.model.name, texts["_step.c"])
-    tables = iphs.model.parameters, iphs.model.inputs
-    factors = {n: str(entry.dimension.factor) for table in tables for n, entry in table.items()}
-    return Template(texts, factors, quick=not iphs.junction.joints and are_all_margins(iphs.model))
+def with_standalone_step(made: Template, name: str) -> Template:
+    """Return the texts of a module as they are written: programs in C can take its step alone."""
+    step = made.files["_step.c"]
+    return replace(made, files={**made.files, "_step.c": step + standalone_step(name, step)})
 
 
 def verdict_line(report: Report) -> str:

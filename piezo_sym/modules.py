@@ -176,20 +176,21 @@ def _starts_inside(module: Any) -> bool:
 
 def _derived(model: Model, stages: int | None) -> ModuleType:
     """Return the module of a model, generated into the user's cache, with its template."""
-    from piezo_sym.build import blank_texts, verdict_line
-    from piezo_sym.derivation import derive
+    from piezo_sym.build import verdict_line, with_standalone_step
     from piezo_sym.verification.process import examining
 
     data = model.flatten().model_dump()
     shape = shape_hash(data)
     found = cached_template(model.name, shape)
     if found is not None:
+        from piezo_sym.derivation import derive
+
         derive(model)  # values may contradict each other where others do not
     else:
         with examining(model) as examined:
-            found = blank_texts(derive(model))
+            found = with_standalone_step(examined.template(), model.name)
             with _compiling_ahead(model.name, shape, found.filled(data), stages):
-                report = examined()
+                report = examined.report()
         found = replace(found, verdict=verdict_line(report))
         if report.failures and (module := _unproved(model, found.filled(data))):
             return module

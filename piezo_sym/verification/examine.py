@@ -1,20 +1,22 @@
 """Everything that is examined of a system: proofs, printed modules, and attacks by numbers.
 
-Input: an `IPHS`.  Output: reports, each more complete than the one before; the last one is whole.
+Input: an `IPHS`.  Output: the texts of its module, then reports, each more complete than the one
+before; the last one is whole.
 A row is PROVED in the last one only if it was proved and no number contradicts it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from typing import Any
 
-from piezo_sym.codegen import collocation_of, lower, printed
+from piezo_sym.codegen.template import template_of
 from piezo_sym.falsify import POINTS, Attack, falsify, module_from
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import Report, Row, Verdict, decide
+from piezo_sym.spec.values import Template
 from piezo_sym.translation import program_rows
 
 #: Rows that say something at every point of the domain, and so can be attacked by numbers.
@@ -28,32 +30,33 @@ def examine(
     iphs: IPHS,
     points: int = POINTS,
     apart: Callable[[Iterator[Any]], AbstractContextManager[Iterator[Any]]] = nullcontext,
-) -> Iterator[Report]:
-    """Yield what is known of a system, the verdicts that were not attacked yet among the first.
+) -> Iterator[Template | Report]:
+    """Yield the texts of a system's module, then verdicts that were not attacked yet, then all.
 
     Parameters
     ----------
     points : how many points the attack takes; fewer in tests of many small networks alone.
-    apart : where modules are printed and read back: in turn, or `beside` proofs and attacks.
+    apart : where printed texts are read back: in turn, or `beside` proofs and attacks.
     """
-    with apart(_translated(iphs)) as translated:
+    made = template_of(iphs)
+    yield made
+    texts = made.filled(iphs.model.flatten().model_dump())
+    with apart(_read_back(iphs, texts)) as read_back:
         proved = decide(iphs)
         yield proved
-        module = module_from(next(translated))
+        module = module_from(texts[".py"])
         proofs = (r for r in proved.rows if r.id in ATTACKED and r.verdict is Verdict.PROVED)
         claims = tuple((row.id, row.element) for row in proofs)
         attacks = falsify(iphs, module, claims, points=points)
-        rows = (*proved.rows, *next(translated))
+        rows = (*proved.rows, *next(read_back))
     found = {(attack.id, attack.element): attack for attack in attacks}
     attacked = (_attacked(row, found.get((row.id, row.element))) for row in rows)
     rounding = (_rounding(attack) for attack in attacks if attack.worst)
     yield replace(proved, rows=(*attacked, *rounding))
 
 
-def _translated(iphs: IPHS) -> Iterator[Any]:
-    """Yield the text of the NumPy module of a system, and the row on all printed texts."""
-    texts = printed(lower(iphs, ""), collocation_of(iphs))
-    yield texts[".py"]
+def _read_back(iphs: IPHS, texts: Mapping[str, str]) -> Iterator[tuple[Row, ...]]:
+    """Yield the row on all printed texts."""
     yield program_rows(iphs, texts)
 
 

@@ -1,7 +1,7 @@
 """The process in which systems are examined: it can be stopped, and its memory is limited.
 
-Input: an `IPHS`, or the text of a spec.  Output: a `Report`; what was not decided in time, or with
-the memory there is, is OPEN and says so.
+Input: an `IPHS` or a `Model`.  Output: a `Report`, and the texts of a module; what was not decided
+in time, or with the memory there is, is OPEN and says so.
 """
 
 from __future__ import annotations
@@ -9,15 +9,17 @@ from __future__ import annotations
 import base64
 import os
 import pickle
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
 from functools import cache
 from threading import Thread
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, final
 
 from piezo_sym.errors import PiezoError
 from piezo_sym.processes import Worker, beside
+from piezo_sym.spec.values import Template
 
 if TYPE_CHECKING:
     from piezo_sym.iphs import IPHS
@@ -42,7 +44,7 @@ def started() -> None:
 
 def examined(iphs: IPHS) -> Report:
     """Return the report on a system, made in the process of this interpreter."""
-    return _report(iphs, iphs.model)
+    return _report(iphs, iphs.model, Future())
 
 
 def examined_model(model: Model) -> Report:
@@ -53,38 +55,68 @@ def examined_model(model: Model) -> Report:
     NetworkError, SpecError
         If the model cannot be derived.
     """
-    return _report(model, model)
+    return _report(model, model, Future())
+
+
+@final
+@dataclass(frozen=True)
+class Examination:
+    """What is being found of a model: who asks for it waits.
+
+    What `examined_model` raises is raised by either; `template` raises a `ProofError` if the
+    process ended before it had the texts of the module.
+    """
+
+    _texts: Future[Template]
+    _verdicts: Future[Report]
+
+    def template(self) -> Template:
+        """Return the texts of the module, before anything is proved of them."""
+        return self._texts.result()
+
+    def report(self) -> Report:
+        """Return the verdicts."""
+        return self._verdicts.result()
 
 
 @contextmanager
-def examining(model: Model, known: Report | None = None) -> Iterator[Callable[[], Report]]:
-    """Give what waits for the report on a model, which is made from now on unless it is known.
-
-    What `examined_model` raises is raised there; where this process fails before, nobody waits.
-    """
-    found: Future[Report] = Future()
+def examining(model: Model) -> Iterator[Examination]:
+    """Give what is found of a model from now on; where this process fails before, nobody waits."""
+    texts: Future[Template] = Future()
+    verdicts: Future[Report] = Future()
 
     def examine() -> None:
         try:
-            found.set_result(known or examined_model(model))
-        except BaseException as error:  # raised again where the report is asked for
-            found.set_exception(error)
+            report = _report(model, model, texts)
+            verdicts.set_result(report)
+            report.raise_if_not_proved()
+        except BaseException as error:  # raised again where something is asked for
+            for future in (texts, verdicts):
+                if not future.done():
+                    future.set_exception(error)
 
     Thread(target=examine, daemon=True).start()
     try:
-        yield found.result
+        yield Examination(texts, verdicts)
     except BaseException:
-        if not found.done():
+        if not verdicts.done():
             _examiner().close()
         raise
 
 
-def _report(subject: IPHS | Model, model: Model) -> Report:
+def _report(subject: IPHS | Model, model: Model, texts: Future[Template]) -> Report:
+    """Return the report on a system; the texts of its module are set when they are known."""
     started()
     from piezo_sym.proofs.report import Report, Row, Verdict  # meanwhile
 
     seconds = PATIENCE + MORE_PATIENCE * max(0, len(model.elements) - SMALL)
-    *reports, last = messages(_examiner(), subject, seconds)
+    reports: list[Any] = []
+    for message in messages(_examiner(), subject, seconds):
+        if isinstance(message, Template):
+            texts.set_result(message)
+        else:
+            reports.append(message)
+    *reports, last = reports
     if isinstance(last, PiezoError):
         raise last
     if isinstance(last, Report):
@@ -96,7 +128,7 @@ def _report(subject: IPHS | Model, model: Model) -> Report:
 
 
 def messages(worker: Worker, subject: object, seconds: float) -> Iterator[Any]:
-    """Yield a `Report` once or more, or an error, or the reason why there is no more, as text.
+    """Yield a `Template`, `Report`s, or an error, or the reason why there is no more, as text.
 
     Parameters
     ----------

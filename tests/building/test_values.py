@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from piezo_sym import Model, derive, load, simulate
-from piezo_sym.build import blank_texts, verdict_line
+from piezo_sym.build import verdict_line
 from piezo_sym.codegen import collocation_of, lower, printed
+from piezo_sym.codegen.template import template_of
 from piezo_sym.errors import PiezoError, SpecError
 from piezo_sym.modules import module_of
 from piezo_sym.spec.source import shipped
@@ -60,7 +61,7 @@ def test_a_template_has_every_value(name):
     data = changed(model, np.random.default_rng(1))
     assert data["parameters"] != model.flatten().model_dump()["parameters"]
     assert shape_hash(data) == shape_hash(model.flatten().model_dump())
-    template = replace(blank_texts(derive(model)), verdict="sigma PROVED")
+    template = replace(template_of(derive(model)), verdict="sigma PROVED")
     iphs = derive(Model(**data))
     for ending, text in printed(lower(iphs, "sigma PROVED"), collocation_of(iphs)).items():
         assert template.filled(data)[ending].startswith(text)

@@ -11,10 +11,12 @@ from contextlib import suppress
 import pytest
 
 from piezo_sym import PiezoError, derive, load, verify
-from piezo_sym.errors import SpecError
+from piezo_sym.codegen.template import template_of
+from piezo_sym.errors import ProofError, SpecError
 from piezo_sym.processes import Worker, beside
 from piezo_sym.proofs import Report, Verdict
 from piezo_sym.spec.load import parse
+from piezo_sym.spec.values import Template
 from piezo_sym.verification import examine, process
 from piezo_sym.verification.process import (
     ENDED,
@@ -45,7 +47,7 @@ def test_a_report_is_that_of_the_system():
 def test_what_takes_too_long_is_stopped_and_the_next_one_is_answered(examiner):
     model = load("piezo_stack")
     assert list(messages(examiner, model, 0.01)) == ["not decided in 0.01 s"]
-    assert {type(message) for message in messages(examiner, model, 60.0)} == {Report}
+    assert {type(m) for m in messages(examiner, model, 60.0)} == {Template, Report}
 
 
 def test_what_is_not_decided_in_time_is_open(monkeypatch):
@@ -182,28 +184,36 @@ def test_a_program_whose_reading_dies_is_open(monkeypatch):
     monkeypatch.setattr(process, "FEWEST_BESIDE", 1)
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     monkeypatch.setattr(examine, "program_rows", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
-    first, last = answer(load("piezo_stack"))
+    *first, last = answer(load("piezo_stack"))
     assert last == ENDED
-    monkeypatch.setattr(process, "messages", lambda *_: iter((first, last)))
+    monkeypatch.setattr(process, "messages", lambda *_: iter((*first, last)))
     rows = {row.id: row for row in examined_model(load("piezo_stack")).rows}
     assert rows["program"].verdict is Verdict.OPEN
     assert ENDED in rows["program"].reason
     assert rows["passive"].verdict is Verdict.OPEN  # it is not known what numbers say
 
 
-def test_a_report_is_made_while_this_process_does_something_else():
+def test_texts_come_before_the_verdicts_on_them():
     model = load("oscillator")
     with examining(model) as found:
-        derive(model)
-        report = found()
+        template, report = found.template(), found.report()
+    assert template == template_of(derive(model))
     assert report.rows == examined_model(model).rows
-    with examining(model, report) as found:
-        assert found() is report
 
 
 def test_errors_of_a_report_are_raised_where_it_is_asked_for():
-    with examining("no model") as found, pytest.raises(AttributeError):
-        found()
+    with examining("no model") as found:
+        for ask in (found.template, found.report):
+            with pytest.raises(AttributeError):
+                ask()
+
+
+def test_where_texts_are_not_made_in_time_who_asks_for_them_is_told(monkeypatch):
+    monkeypatch.setattr(process, "PATIENCE", 0.01)
+    with examining(load("piezo_stack")) as found:
+        assert not found.report().proved
+        with pytest.raises(ProofError, match=r"not decided in 0\.01 s"):
+            found.template()
 
 
 def test_who_is_stopped_leaves_no_examination_behind():

@@ -1,0 +1,15 @@
+"""IPHS to the texts of its module, with places for the values of its spec."""
+
+from piezo_sym.codegen import collocation_of, lower, printed
+from piezo_sym.codegen.program import blank
+from piezo_sym.iphs import IPHS
+from piezo_sym.spec.checks.values import are_all_margins
+from piezo_sym.spec.values import Template
+
+
+def template_of(iphs: IPHS) -> Template:
+    """Return the texts that are proved and written for a system, whatever its values are."""
+    texts = printed(blank(lower(iphs, "")), collocation_of(iphs))
+    tables = iphs.model.parameters, iphs.model.inputs
+    factors = {n: str(entry.dimension.factor) for table in tables for n, entry in table.items()}
+    return Template(texts, factors, quick=not iphs.junction.joints and are_all_margins(iphs.model))
