@@ -107,14 +107,20 @@ class Draw:
         steps = [
             np.unique(_bounded(np.multiply.outer(row[-3:], LADDER).ravel())) for row in self.scales
         ]
-        found: list[tuple[Index, Index, Index, Array, Array]] = []
-        for column, ladder in enumerate(steps):
+        none = np.empty(0, dtype=np.int64), np.empty(0)
+        found = [(none[0], none[0], none[0], none[1], none[1])]
+        for column, ((name, _), ladder) in enumerate(zip(self.space.columns, steps, strict=True)):
+            edges = self.space.edges_by_column.get(name, ())
+            if not edges:
+                continue
             points = np.repeat(bases, len(ladder), axis=1)
             points[column] = np.tile(ladder, count)
-            signs = np.sign(self.space.at(points).edges).reshape(-1, count, len(ladder))
+            signs = np.sign(self.space.at(points).some_edges(edges))
+            signs = signs.reshape(-1, count, len(ladder))
             first, second = signs[..., :-1], signs[..., 1:]
-            edge, base, step = np.nonzero((first != second) & np.isfinite(first * second))
-            rising = first[edge, base, step] != 0
+            row, base, step = np.nonzero((first != second) & np.isfinite(first * second))
+            edge = np.concatenate([np.r_[self.space.edge_rows[n]] for n in edges])[row]
+            rising = first[row, base, step] != 0
             low = np.where(rising, ladder[step], ladder[step + 1])
             high = np.where(rising, ladder[step + 1], ladder[step])
             found.append((edge, np.full_like(edge, column), base, low, high))

@@ -16,7 +16,7 @@ from typing import Any, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
-from piezo_sym.expressions.tree import Cmp, Expr, Num, Sym
+from piezo_sym.expressions.tree import Cmp, Expr, Num, Sym, names
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.falsify.floats import COMPARED, Approx, Floats
 from piezo_sym.falsify.probe import RESULTS, Probe
@@ -122,6 +122,34 @@ class Space:
         }
 
     @cached_property
+    def edges_by_column(self) -> Mapping[str, tuple[int, ...]]:
+        """The edges that depend on each parameter, input or state, if any do."""
+        known: dict[str, frozenset[str]] = {}
+
+        def columns(tree: Expr) -> frozenset[str]:
+            return frozenset[str]().union(*map(behind, names(tree)))
+
+        def behind(name: str) -> frozenset[str]:
+            if name not in known:
+                if " " in name:  # a function of the module: it is not asked what it depends on
+                    known[name] = frozenset(self.columns_of)
+                elif name in self.columns_of or name not in self.probe.defined:
+                    known[name] = frozenset({name})
+                else:
+                    known[name] = columns(self.probe.defined[name][0])
+            return known[name]
+
+        found: dict[str, tuple[int, ...]] = {}
+        for n, edge in enumerate(self.probe.edges):
+            found |= {name: (*found.get(name, ()), n) for name in columns(edge.tree)}
+        return found
+
+    @cached_property
+    def edge_rows(self) -> Mapping[int, slice]:
+        """The rows of each edge, one per lane."""
+        return self._slices((n, edge.bank) for n, edge in enumerate(self.probe.edges))
+
+    @cached_property
     def kinks(self) -> Mask:
         """Which rows of the edges are kinks."""
         edges = self.probe.edges
@@ -199,11 +227,15 @@ class Seen:
 
     @cached_property
     def edges(self) -> Array:
-        """The values of edges; one with a value per lane has a row for each."""
+        """The values of all edges; one with a value per lane has a row for each."""
+        return self.some_edges(range(len(self.space.probe.edges)))
+
+    def some_edges(self, numbers: Iterable[int]) -> Array:
+        """Return the values of some edges, as `edges` gives them of all."""
         edges, count = self.space.probe.edges, self.points.shape[1]
         rows = (
-            np.broadcast_to(self.of(edge.tree).value, (self.space.lanes(edge.bank), count))
-            for edge in edges
+            np.broadcast_to(self.of(edges[n].tree).value, (self.space.lanes(edges[n].bank), count))
+            for n in numbers
         )
         return np.concatenate([np.empty((0, count)), *rows])
 

@@ -132,7 +132,9 @@ class Expressions:
     def _real(self, read: Read) -> Read:
         value, shape = read
         return (
-            (self.real(value), PLAIN) if shape == WHOLE else (value, replace(shape, integers=False))
+            (self.real(value), PLAIN)
+            if shape == WHOLE
+            else (value, replace(shape, integers=False) if shape.integers else shape)
         )
 
     def whole(self, node: ast.expr) -> Value:

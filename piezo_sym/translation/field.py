@@ -58,7 +58,7 @@ class Value:
 
     def __init__(self, field: GeneratorField, terms: Mapping[Mono, Exponent]) -> None:
         self.field = field
-        self.terms = {mono: c for mono, c in terms.items() if c}
+        self.terms = terms if all(terms.values()) else {m: c for m, c in terms.items() if c}
 
     @cached_property
     def _hash(self) -> int:
@@ -142,6 +142,7 @@ class GeneratorField:
     needs : the conditions of the divisions, roots and logarithms read so far.
     states : the names by which derivatives are taken.
     signed : generators that are positive (2) or not negative (1).
+    counts : those that are sizes of banks, positive even outside the domain.
     assumed : other values of which the domain says the same.
     signs, forms, factors, never, asked : results kept by `signs`, `zero` and `possible`.
     unknown : how often a solver gave no answer.
@@ -151,8 +152,9 @@ class GeneratorField:
     def __init__(self) -> None:
         self.gens: list[Generator] = []
         self._numbers: dict[tuple[str, Value | None, Hashable], int] = {}
-        self._joined: dict[tuple[Mono, Mono], tuple[Mono, Value | None] | None] = {}
+        self._joined: dict[Mono, dict[Mono, tuple[Mono, Value | None] | None]] = {}
         self.work = 0
+        self.counts: dict[int, int] = {}
         self.zero, self.one = Value(self, {}), Value(self, {(): 1})
         self.path: Value | None = self.one
         self.derived, self.outside = False, ""
@@ -182,7 +184,9 @@ class GeneratorField:
 
     def count(self, bank: str) -> Value:
         """Return the size of a bank."""
-        return self.name(f"{bank}_count", None, -1, sign=2)
+        made = self.name(f"{bank}_count", None, -1, sign=2)
+        self.counts |= dict.fromkeys(made.parts, 2)
+        return made
 
     def generator(self, kind: str, arg: Value | None, mark: Hashable = None) -> Value:
         """Return a generator as a value."""
@@ -227,17 +231,18 @@ class GeneratorField:
         terms: dict[Mono, Exponent] = {}
         more = []
         for m, a in left.terms.items():
+            joined = self._joined.setdefault(m, {})
             for n, b in right.terms.items():
-                if (m, n) not in self._joined:
-                    self._joined[m, n] = self._join(m, n)
-                found, c = self._joined[m, n], a * b
+                found, c = joined.get(n, ()), a * b
+                if found == ():
+                    found = joined[n] = self._join(m, n)
                 if c.numerator.bit_length() + c.denominator.bit_length() > MOST_BITS:
                     raise NotShownError("the numbers are too long")
                 if found and found[1] is None:
                     terms[found[0]] = terms.get(found[0], 0) + c
                 elif found and found[1]:
                     more.append(self.times(Value(self, {found[0]: c}), found[1]))
-        return self.total([Value(self, terms), *more])
+        return self.total([Value(self, terms), *more]) if more else Value(self, terms)
 
     def _join(self, m: Mono, n: Mono) -> tuple[Mono, Value | None] | None:
         """Return a product of monomials: one monomial, and a sum to multiply it with, or none."""

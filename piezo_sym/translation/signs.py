@@ -91,19 +91,13 @@ def reading(field: GeneratorField, function: str) -> Iterator[None]:
         return
     kept = field.signed, field.assumed, field.signs, field.forms, field.never, field.asked
     outside, field.outside = field.outside, function
-    counts = (g for g, gen in enumerate(field.gens) if gen.kind == "name" and _counts(gen))
-    field.signed, field.assumed = dict.fromkeys(counts, 2), {field.zero: 1}
+    field.signed, field.assumed = dict(field.counts), {field.zero: 1}
     field.signs, field.forms, field.never, field.asked = {}, {}, {}, {}
     try:
         yield
     finally:
         field.signed, field.assumed, field.signs, field.forms, field.never, field.asked = kept
         field.outside = outside
-
-
-def _counts(gen: Generator) -> bool:
-    """Return whether a name is the size of a bank."""
-    return isinstance(gen.mark, tuple) and gen.mark[2] == -1
 
 
 def sides_of(d: Value) -> set[int]:
