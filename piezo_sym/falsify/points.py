@@ -107,8 +107,9 @@ class Draw:
         steps = [
             np.unique(_bounded(np.multiply.outer(row[-3:], LADDER).ravel())) for row in self.scales
         ]
-        none = np.empty(0, dtype=np.int64), np.empty(0)
-        found = [(none[0], none[0], none[0], none[1], none[1])]
+        nowhere, nothing = np.empty(0, dtype=np.int64), np.empty(0)
+        found: list[tuple[Index, Index, Index, Array, Array]]
+        found = [(nowhere, nowhere, nowhere, nothing, nothing)]
         for column, ((name, _), ladder) in enumerate(zip(self.space.columns, steps, strict=True)):
             edges = self.space.edges_by_column.get(name, ())
             if not edges:

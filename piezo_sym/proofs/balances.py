@@ -19,6 +19,7 @@ from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, Mul, Num, Sym, names
 from piezo_sym.iphs import IPHS
+from piezo_sym.iphs.definitions import Energy
 from piezo_sym.proofs.assumptions import Assumptions, Law
 from piezo_sym.proofs.branches import TooManyBranchesError, branches, parts
 from piezo_sym.proofs.continuity import unbroken
@@ -164,11 +165,15 @@ def _cooling(iphs: IPHS, assumptions: Assumptions) -> Iterator[Question]:
 
 def _gradient(iphs: IPHS, assumptions: Assumptions) -> Iterator[Residual]:
     """Yield dU/dx minus the co-state, for each state."""
-    stored = [(e, iphs.symbols.law(e.law, {})) for e in iphs.energies]
+    stored: dict[str, list[tuple[Energy, sp.Expr]]] = {}
+    for energy in iphs.energies:
+        law = iphs.symbols.law(energy.law, {})
+        for name in names(energy.law):
+            stored.setdefault(name, []).append((energy, law))
     stores = iphs.circuit.of(Storage, Body)
     for (_, port), (_, costate) in zip(stores, iphs.costates, strict=True):
         state = iphs.symbols[port.state]
-        own = [(energy, law) for energy, law in stored if port.state in names(energy.law)]
+        own = stored.get(port.state, [])
         difference = sp.Add(*(sp.diff(law, state) for _, law in own)) - costate
         residual, empty = sp.expand(sp.together(difference)), tuple[Question, ...]()
         rise = add(*(slope(energy.law, port.state) for energy, _ in own))

@@ -8,6 +8,6 @@ comparison   rows -> the row `program`                  program, zero, witness
 Readers are not printers: they know a written grammar and refuse all else.  Nothing is executed.
 """
 
-from piezo_sym.translation.program import program_rows
+from piezo_sym.translation.program import program_row, worst
 
-__all__ = ["program_rows"]
+__all__ = ["program_row", "worst"]

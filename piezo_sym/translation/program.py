@@ -7,8 +7,9 @@ the stage and what its means are of, see `collocation`.  REFUTED with numbers at
 differs; OPEN with what was not understood or not shown.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import final
 
 from piezo_sym.iphs import IPHS
@@ -42,36 +43,42 @@ _ENOUGH = {
 @final
 @dataclass(frozen=True)
 class Reference:
-    """A proved system in normal form, and its stage."""
+    """What printed texts of a system are compared with, in normal form."""
 
-    system: Proved
-    stage: Proved
+    iphs: IPHS
+
+    @cached_property
+    def system(self) -> Proved:
+        """The proved system."""
+        return proved(self.iphs)
+
+    @cached_property
+    def stage(self) -> Proved:
+        """The stage of its step."""
+        return proved_step(self.iphs)
 
 
-def reference_of(iphs: IPHS) -> Reference:
-    """Return what printed texts of a system are compared with."""
-    return Reference(proved(iphs), proved_step(iphs))
-
-
-def program_rows(iphs: IPHS, texts: Mapping[str, str]) -> tuple[Row, ...]:
+def program_row(iphs: IPHS, texts: Mapping[str, str], endings: Collection[str] = READ) -> Row:
     """Return the row `program` of a system and its printed modules.
 
     Parameters
     ----------
     iphs : from `derive`.
     texts : from `printed`.
+    endings : of the texts that are read; rows on some of them are joined by `worst`.
     """
     try:
-        known = reference_of(iphs)
-        found = [
-            row
-            for ending, language in READ.items()
-            for row in different(language, texts[ending], known)
-        ]
+        known = Reference(iphs)
+        found = [row for end in endings for row in different(READ[end], texts[end], known)]
     except (NotShownError, RecursionError) as error:
         found = [_open(str(error))]
-    refuted = (row for row in found if row.verdict is Verdict.REFUTED)
-    return (next(refuted, (*found, Row("program", "", STATEMENT, Verdict.PROVED))[0]),)
+    return worst((*found, Row("program", "", STATEMENT, Verdict.PROVED)))
+
+
+def worst(rows: Iterable[Row]) -> Row:
+    """Return the first row that is refuted, or else the first that is open, or else the first."""
+    order = Verdict.REFUTED, Verdict.OPEN, Verdict.PROVED
+    return min(rows, key=lambda row: order.index(row.verdict))
 
 
 def _open(reason: str) -> Row:

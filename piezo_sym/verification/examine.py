@@ -17,7 +17,7 @@ from piezo_sym.falsify import POINTS, Attack, falsify, module_from
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import Report, Row, Verdict, decide
 from piezo_sym.spec.values import Template
-from piezo_sym.translation import program_rows
+from piezo_sym.translation import program_row, worst
 
 #: Rows that say something at every point of the domain, and so can be attacked by numbers.
 ATTACKED = frozenset(
@@ -41,23 +41,25 @@ def examine(
     made = template_of(iphs)
     yield made
     texts = made.filled(iphs.model.flatten().model_dump())
-    with apart(_read_back(iphs, texts)) as read_back:
+    of_system = apart(_read_back(iphs, texts, (".py", ".c")))
+    of_step = apart(_read_back(iphs, texts, ("_step.c",)))
+    with of_system as system, of_step as step:
         proved = decide(iphs)
         yield proved
         module = module_from(texts[".py"])
         proofs = (r for r in proved.rows if r.id in ATTACKED and r.verdict is Verdict.PROVED)
         claims = tuple((row.id, row.element) for row in proofs)
         attacks = falsify(iphs, module, claims, points=points)
-        rows = (*proved.rows, *next(read_back))
+        rows = (*proved.rows, worst((next(system), next(step))))
     found = {(attack.id, attack.element): attack for attack in attacks}
     attacked = (_attacked(row, found.get((row.id, row.element))) for row in rows)
     rounding = (_rounding(attack) for attack in attacks if attack.worst)
     yield replace(proved, rows=(*attacked, *rounding))
 
 
-def _read_back(iphs: IPHS, texts: Mapping[str, str]) -> Iterator[tuple[Row, ...]]:
-    """Yield the row on all printed texts."""
-    yield program_rows(iphs, texts)
+def _read_back(iphs: IPHS, texts: Mapping[str, str], endings: tuple[str, ...]) -> Iterator[Row]:
+    """Yield the row on some of the printed texts."""
+    yield program_row(iphs, texts, endings)
 
 
 def unfinished(report: Report, reason: str) -> Report:

@@ -78,12 +78,12 @@ def mutated(text: str, mutant: Mutant) -> Said:
     from piezo_sym.falsify import falsify, module_from
     from piezo_sym.proofs import Report, decide, proofs_json
     from piezo_sym.spec.load import parse
-    from piezo_sym.translation import program_rows
+    from piezo_sym.translation import program_row
 
     iphs = derive(parse(text))
     report = decide(iphs)
     texts = printed(lower(iphs, ""), collocation_of(iphs))
-    rows = (*report.rows, *program_rows(iphs, texts))
+    rows = (*report.rows, program_row(iphs, texts))
     whole = Report(report.model, rows, report.obligations, report.system)
     said = {"rows": _verdicts(whole), "system": _system(iphs, report), "net": ""}
     said["proofs"] = proofs_json(whole, iphs.model, "made by a test")

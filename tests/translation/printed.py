@@ -5,7 +5,7 @@ import re
 from piezo_sym import codegen
 from piezo_sym.codegen import collocation_of, lower
 from piezo_sym.codegen.c.style import REALS
-from piezo_sym.translation import program_rows
+from piezo_sym.translation import program_row
 from piezo_sym.translation.program import READ
 
 TEXTS = tuple(READ.values())
@@ -29,4 +29,4 @@ def with_functions(step):
 
 def rows(iphs, texts):
     """Return the rows `program` of a system and texts, by the names of `printed`."""
-    return program_rows(iphs, {ending: texts[language] for ending, language in READ.items()})
+    return (program_row(iphs, {end: texts[language] for end, language in READ.items()}),)

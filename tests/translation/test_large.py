@@ -5,7 +5,7 @@ import pytest
 from piezo_sym import derive
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.load import parse
-from piezo_sym.translation.program import different, reference_of
+from piezo_sym.translation.program import Reference, different
 from tests.benchmarks.test_chain import HEAD, chain
 from tests.translation.printed import TEXTS, printed
 
@@ -25,7 +25,7 @@ def bundle(coils):
 def examined(text):
     """Return the texts of a system by language, and it in normal form."""
     iphs = derive(parse(text))
-    return printed(iphs), reference_of(iphs)
+    return printed(iphs), Reference(iphs)
 
 
 @pytest.fixture(scope="module")

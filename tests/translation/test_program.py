@@ -14,7 +14,7 @@ from piezo_sym.expressions.calculus import add, mul
 from piezo_sym.expressions.tree import LaneSum, Num
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.load import parse
-from piezo_sym.translation.program import different, reference_of
+from piezo_sym.translation.program import Reference, different
 from tests.mutants.specs import spec_of
 from tests.translation.mutants import mutants
 from tests.translation.printed import TEXTS, printed, rows
@@ -54,9 +54,9 @@ def survivors(name, language, sample=None):
     iphs = iphs_of(name)
     made = list(mutants(printed(iphs)[language]))
     made = random.Random(name).sample(made, sample) if sample else made
-    known, counts, alive = reference_of(iphs), Counter(), []
+    known, counts, alive = Reference(iphs), Counter(), []
     for n, (what, text) in enumerate(made):
-        known = reference_of(iphs) if n % 100 == 99 else known  # it grows by what is read
+        known = Reference(iphs) if n % 100 == 99 else known  # it grows by what is read
         counts[found := verdict(known, language, text)] += 1
         alive += [what] if found is Verdict.PROVED else []
     return alive, counts
@@ -83,7 +83,7 @@ def test_no_mutant_is_proved(name, language):
 @pytest.mark.parametrize("language", TEXTS[:2])
 def test_a_change_of_a_quantity_before_it_is_printed_is_refuted(language):
     iphs = iphs_of("piezo_stack")
-    program, known = lower(iphs, ""), reference_of(iphs)
+    program, known = lower(iphs, ""), Reference(iphs)
     for n in range(TEXTS.index(language), len(program.quantities), 4):
         quantity = program.quantities[n]
         value = quantity.value

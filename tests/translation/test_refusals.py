@@ -5,7 +5,7 @@ import pytest
 from piezo_sym import derive, load
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.load import parse
-from piezo_sym.translation.program import different, reference_of
+from piezo_sym.translation.program import Reference, different
 from tests.mutants.specs import spec_of
 from tests.translation.printed import printed, rows
 from tests.translation.test_program import SPECS
@@ -135,7 +135,7 @@ C = {
 @pytest.fixture(scope="module")
 def made():
     iphs = derive(load("piezo_stack"))
-    return printed(iphs), reference_of(iphs)
+    return printed(iphs), Reference(iphs)
 
 
 def row(made, language, old, new):
@@ -232,7 +232,7 @@ def test_a_module_that_computes_erf_in_another_way_is_not_proved(old, new):
     iphs = derive(load(str(SPECS / "smooth_functions.toml")))
     text = printed(iphs)["NumPy"]
     assert old in text
-    (row, *_) = different("NumPy", text.replace(old, new), reference_of(iphs))
+    (row, *_) = different("NumPy", text.replace(old, new), Reference(iphs))
     assert row.verdict is Verdict.OPEN
 
 
@@ -253,7 +253,7 @@ mass = { kind = "mass", at = "a", mass = "M", state = "p" }
 
 def test_a_margin_of_a_step_has_no_right_to_what_a_mean_needs():
     iphs = derive(parse(LOGARITHM))
-    texts, known = printed(iphs), reference_of(iphs)
+    texts, known = printed(iphs), Reference(iphs)
     assert rows(iphs, texts)[0].verdict is Verdict.PROVED
     for wrong in ("r*exp_of(log_of(1.0 - q/r))", "(r - q)*M/M", "(r - q)*(M*M + r*r)/(M*M + r*r)"):
         text = texts["step"].replace("m[0] = r - q;", f"m[0] = {wrong};")

@@ -8,7 +8,7 @@ import pytest
 from piezo_sym import derive
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.load import parse
-from piezo_sym.translation.program import reference_of
+from piezo_sym.translation.program import Reference
 from tests.translation.mutants import mutants
 from tests.translation.printed import TEXTS, printed, rows
 from tests.translation.test_program import verdict
@@ -60,14 +60,14 @@ def test_another_root_below_is_not_proved(old, new):
     text = printed(iphs)["step"]
     assert old in text
     changed = text.replace(old, new, 1)
-    assert verdict(reference_of(iphs), "step", changed) is not Verdict.PROVED
+    assert verdict(Reference(iphs), "step", changed) is not Verdict.PROVED
 
 
 @pytest.mark.some(2)
 @pytest.mark.parametrize("language", TEXTS)
 def test_no_mutant_of_a_root_below_is_proved(language):
     iphs = derive(parse(SPEC.format(law=LAWS[0])))
-    text, known = printed(iphs)[language], reference_of(iphs)
+    text, known = printed(iphs)[language], Reference(iphs)
     lines = [n for n, line in enumerate(text.split("\n"), 1) if "sqrt" in line]
     made = [one for one in mutants(text) if int(one[0].split()[1]) in lines]
     assert len(made) > 10

@@ -11,7 +11,7 @@ from piezo_sym.modules import module_of
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.spec.load import parse
-from piezo_sym.translation.program import reference_of
+from piezo_sym.translation.program import Reference
 from tests.translation.mutants import mutants
 from tests.translation.printed import TEXTS, printed, rows
 from tests.translation.test_program import verdict
@@ -103,7 +103,7 @@ def test_starts_as_printed_are_proved(iphs):
 @pytest.mark.some(1)
 @pytest.mark.parametrize("language", TEXTS[:2])
 def test_no_mutant_of_the_starts_is_proved(iphs, language):
-    text, known = printed(iphs)[language], reference_of(iphs)
+    text, known = printed(iphs)[language], Reference(iphs)
     head = {"NumPy": "def ", "C": "void listed_"}[language]
     ends = (text.index(f"{head}{name}(") for name in ("initial_state", "rhs"))
     first, last = (text[:end].count("\n") for end in ends)
@@ -149,4 +149,4 @@ def test_a_list_of_other_lanes_is_not_proved(iphs, language, old, new):
     text = printed(iphs)[language]
     at = text.index(old, text.index("initial_state("))
     changed = f"{text[:at]}{new}{text[at + len(old) :]}"
-    assert verdict(reference_of(iphs), language, changed) is not Verdict.PROVED
+    assert verdict(Reference(iphs), language, changed) is not Verdict.PROVED

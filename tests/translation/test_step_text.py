@@ -8,7 +8,7 @@ import pytest
 from piezo_sym import derive, load
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.spec.load import parse
-from piezo_sym.translation.program import different, reference_of
+from piezo_sym.translation.program import Reference, different
 from tests.mutants.specs import spec_of
 from tests.translation.printed import printed, rows
 from tests.translation.test_program import iphs_of
@@ -148,7 +148,7 @@ NOT_READ = {
 @pytest.fixture(scope="module")
 def made():
     iphs = iphs_of("piezo_stack")
-    return printed(iphs)["step"], reference_of(iphs)
+    return printed(iphs)["step"], Reference(iphs)
 
 
 def spelled(text):
@@ -212,7 +212,7 @@ def test_laws_that_choose_are_proved_and_no_switch_can_be_left_out(law):
     words = spec_of(f"{LAWS[law]} | d > 0; a > 0 | a=1.0")
     words = words.replace("heats =", "discontinuous = true, heats =") if law == "sign" else words
     iphs = derive(parse(words))
-    texts, known = printed(iphs), reference_of(iphs)
+    texts, known = printed(iphs), Reference(iphs)
     assert different("step", texts["step"], known) == ()
     written = re.findall(r"^    s\[\d+\] = (\w+);$", texts["step"], re.MULTILINE)
     assert written
@@ -245,7 +245,7 @@ def test_a_margin_of_a_bank_is_that_of_its_least_lane():
 def test_kinks_outside_of_laws_are_printed_and_read(law, more):
     """Margins and integrands choose by comparisons: no step keeps their branches."""
     iphs = derive(parse(spec_of(f"{law} | d > 0; {more}")))
-    known = reference_of(iphs)
+    known = Reference(iphs)
     text = printed(iphs)["step"]
     assert different("step", text, known) == ()
     if "m[0] = chosen(" in text:

@@ -183,7 +183,7 @@ with beside(work()) as found:
 def test_a_program_whose_reading_dies_is_open(monkeypatch):
     monkeypatch.setattr(process, "FEWEST_BESIDE", 1)
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
-    monkeypatch.setattr(examine, "program_rows", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
+    monkeypatch.setattr(examine, "program_row", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
     *first, last = answer(load("piezo_stack"))
     assert last == ENDED
     monkeypatch.setattr(process, "messages", lambda *_: iter((*first, last)))
