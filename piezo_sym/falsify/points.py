@@ -111,16 +111,16 @@ class Draw:
         found: list[tuple[Index, Index, Index, Array, Array]]
         found = [(nowhere, nowhere, nowhere, nothing, nothing)]
         for column, ((name, _), ladder) in enumerate(zip(self.space.columns, steps, strict=True)):
-            edges = self.space.edges_by_column.get(name, ())
-            if not edges:
+            moving = self.space.edges_by_column.get(name, ())
+            if not moving:
                 continue
             points = np.repeat(bases, len(ladder), axis=1)
             points[column] = np.tile(ladder, count)
-            signs = np.sign(self.space.at(points).some_edges(edges))
+            signs = np.sign(self.space.at(points).some_edges(moving))
             signs = signs.reshape(-1, count, len(ladder))
             first, second = signs[..., :-1], signs[..., 1:]
             row, base, step = np.nonzero((first != second) & np.isfinite(first * second))
-            edge = np.concatenate([np.r_[self.space.edge_rows[n]] for n in edges])[row]
+            edge = np.concatenate([np.r_[self.space.edge_rows[n]] for n in moving])[row]
             rising = first[row, base, step] != 0
             low = np.where(rising, ladder[step], ladder[step + 1])
             high = np.where(rising, ladder[step + 1], ladder[step])
