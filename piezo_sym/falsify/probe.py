@@ -91,6 +91,16 @@ class Probe:
         """Return a law, written out: what a name stands for, not the name."""
         return self.written(self.laws[what, element])
 
+    def behind(self, tree: Expr) -> set[str]:
+        """Return the names in a tree and in what they stand for, not in functions of the module."""
+        found, left = set[str](), [*names(tree)]
+        while left:
+            if (name := left.pop()) not in found:
+                found.add(name)
+                tree, _ = self.defined.get(name, (ONE, None))
+                left += names(tree) if " " not in name else ()
+        return found
+
     @cached_property
     def produced(self) -> Expr:
         """The entropy that all processes produce."""

@@ -16,7 +16,7 @@ from typing import Any, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
-from piezo_sym.expressions.tree import Cmp, Expr, Num, Sym, names
+from piezo_sym.expressions.tree import Cmp, Expr, Num, Sym
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.falsify.floats import COMPARED, Approx, Floats
 from piezo_sym.falsify.probe import RESULTS, Probe
@@ -123,25 +123,12 @@ class Space:
 
     @cached_property
     def edges_by_column(self) -> Mapping[str, tuple[int, ...]]:
-        """The edges that depend on each parameter, input or state, if any do."""
-        known: dict[str, frozenset[str]] = {}
-
-        def columns(tree: Expr) -> frozenset[str]:
-            return frozenset[str]().union(*map(behind, names(tree)))
-
-        def behind(name: str) -> frozenset[str]:
-            if name not in known:
-                if " " in name:  # a function of the module: it is not asked what it depends on
-                    known[name] = frozenset(self.columns_of)
-                elif name in self.columns_of or name not in self.probe.defined:
-                    known[name] = frozenset({name})
-                else:
-                    known[name] = columns(self.probe.defined[name][0])
-            return known[name]
-
+        """The edges that depend on a column's name; of what the module computes it may be any."""
         found: dict[str, tuple[int, ...]] = {}
         for n, edge in enumerate(self.probe.edges):
-            found |= {name: (*found.get(name, ()), n) for name in columns(edge.tree)}
+            behind = self.probe.behind(edge.tree)
+            for name in self.columns_of if " " in "".join(behind) else behind:
+                found[name] = (*found.get(name, ()), n)
         return found
 
     @cached_property

@@ -154,13 +154,13 @@ class GeneratorField:
         self._numbers: dict[tuple[str, Value | None, Hashable], int] = {}
         self._joined: dict[Mono, dict[Mono, tuple[Mono, Value | None] | None]] = {}
         self.work = 0
-        self.counts: dict[int, int] = {}
         self.zero, self.one = Value(self, {}), Value(self, {(): 1})
         self.path: Value | None = self.one
         self.derived, self.outside = False, ""
         self.needs: dict[Need, None] = {}
         self.states: frozenset[int] = frozenset()
         self.signed: dict[int, int] = {}
+        self.counts: dict[int, int] = {}
         self.assumed: dict[Value, int] = {self.zero: 1}
         self.signs: dict[Value, int] = {}
         self.forms: dict[Value, tuple[list[Value], int]] = {}
@@ -168,8 +168,6 @@ class GeneratorField:
         self.never: dict[tuple[Value, int, Value, int], bool] = {}
         self.asked: dict[frozenset[tuple[Value, int]], bool] = {}
         self.unknown = 0
-
-    # Generators
 
     def number(self, value: Exponent) -> Value:
         """Return a rational number."""
@@ -180,13 +178,12 @@ class GeneratorField:
         made = self.generator("name", None, (name, bank, lane))
         (number,) = made.parts
         self.signed[number] = max(sign, self.signed.get(number, 0))
+        self.counts |= {number: sign} if lane == -1 else {}
         return made
 
     def count(self, bank: str) -> Value:
         """Return the size of a bank."""
-        made = self.name(f"{bank}_count", None, -1, sign=2)
-        self.counts |= dict.fromkeys(made.parts, 2)
-        return made
+        return self.name(f"{bank}_count", None, -1, sign=2)
 
     def generator(self, kind: str, arg: Value | None, mark: Hashable = None) -> Value:
         """Return a generator as a value."""
@@ -213,8 +210,6 @@ class GeneratorField:
         """Return a power of a generator; for a power of a sum it is not yet in normal form."""
         return Value(self, {((g, exponent),): 1})
 
-    # Sums and products
-
     def total(self, values: Iterable[Value]) -> Value:
         """Return a sum."""
         terms: dict[Mono, Exponent] = {}
@@ -233,9 +228,9 @@ class GeneratorField:
         for m, a in left.terms.items():
             joined = self._joined.setdefault(m, {})
             for n, b in right.terms.items():
-                found, c = joined.get(n, ()), a * b
-                if found == ():
-                    found = joined[n] = self._join(m, n)
+                if n not in joined:
+                    joined[n] = self._join(m, n)
+                found, c = joined[n], a * b
                 if c.numerator.bit_length() + c.denominator.bit_length() > MOST_BITS:
                     raise NotShownError("the numbers are too long")
                 if found and found[1] is None:
