@@ -4,8 +4,6 @@ Input: a SymPy expression from the junction laws.  Output: a tree whose order of
 so that printed text does not depend on SymPy's.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import sympy as sp

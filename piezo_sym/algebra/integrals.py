@@ -4,8 +4,6 @@ Input: a smooth law and a name.  Output: a tree whose derivative is shown to be 
 The process ends itself after `SECONDS`, whatever SymPy does, and its memory is limited.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import resource

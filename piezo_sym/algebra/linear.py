@@ -5,8 +5,6 @@ givens, or a `SingularError` with the contradictions, from which the caller name
 fault.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush

@@ -4,8 +4,6 @@ Input: SymPy expressions, slots and entries.  Output: text.  Terms of a sum stan
 which they are given, not in SymPy's; a bank's row or column stands for j = 1..r.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, final

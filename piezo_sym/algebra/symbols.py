@@ -5,8 +5,6 @@ says is positive (or not negative) is so in SymPy too; temperatures are positive
 bank's lane is spelled with the paper's index, ``phi_j``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial

@@ -13,8 +13,6 @@ exact    a point -> the row's exact value        exact
 jumps    kinks -> a law's jump, exactly          jumps
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from types import ModuleType
 

@@ -3,8 +3,6 @@
 Input: a `Probe`, and a row.  Output: a `Claim`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass
 from typing import final

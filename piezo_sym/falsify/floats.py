@@ -4,8 +4,6 @@ Input: a tree, and the value of each name: an array of points, with an axis of l
 there is a bank.  Output: an `Approx`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

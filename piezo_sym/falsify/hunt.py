@@ -3,8 +3,6 @@
 Input: an `IPHS`, its module, rows.  Output: an `Attack` per row, or a `ContradictionError`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -6,8 +6,6 @@ it), `corners` (kinks found from kinks), `drawn` (random values in logarithmic r
 values and near equality) and `walked` (random steps from points inside, where drawing finds few).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property

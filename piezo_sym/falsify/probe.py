@@ -6,8 +6,6 @@ of the domain, a divisor, the argument of a root, a sum, the difference of quant
 dimension.
 """
 
-from __future__ import annotations
-
 import importlib.abc
 import importlib.util
 from collections import Counter

@@ -4,8 +4,6 @@ Input: a `Circuit`, its symbols and its junction.  Output: the `System` in named
 each name the expression behind it, stated once.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import final

@@ -6,8 +6,6 @@ printed text find each by themselves.  A branch's power, effort times flow, flow
 that of a store is the rate of its energy, that of a source the negative of what it supplies.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeVar, final
 

@@ -4,8 +4,6 @@ Input: a `System`, and which of its names are written out (velocities as p/M) an
 explained below the equations (laws, ratios, temperatures).  Output: text, one equation per line.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import final

@@ -9,8 +9,6 @@ T and the ratios are symbols; what they are as functions of the state is said on
 Proofs close on this form, and generated code follows it line by line.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import final

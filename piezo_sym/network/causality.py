@@ -7,8 +7,6 @@ A law that is not linear keeps its causality; if that cannot be, the network is 
 Stores whose co-states the junction laws tie to earlier ones are given theirs.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from piezo_sym.algebra.linear import Form, SingularError, combine

@@ -4,8 +4,6 @@ Input: a `DissipativePort`, whose law is a function of one letter.  Output: the 
 other causality, ``voltage = "R*i"`` as ``current = "v/R"``, if its law is linear in the letter.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import replace
 

@@ -7,8 +7,6 @@ allow, rests x_0 and e = Q (x - x_0),
     x_r = Z^T x     e_r = A^-1 y     U_r = y^T A^-1 y/2     y = x_r - Z^T x_0     A = Z^T Q^-1 Z.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction

@@ -10,8 +10,6 @@ matrices, and it is checked that the structure preserves power.  Linear resistor
 each other's flow are solved by `loops`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import final

@@ -6,8 +6,6 @@ its across or through variable, and the laws say the rest.  A bank is one repres
 own unknowns are eliminated first.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property

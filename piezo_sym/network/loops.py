@@ -12,8 +12,6 @@ Where every slope is >= 0, det(I - M G) >= 1, for it is a sum of squares of Pfaf
 products of slopes, that of the empty set being 1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import final

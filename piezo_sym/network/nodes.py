@@ -3,8 +3,6 @@
 Input: a `Circuit`.  Output: nothing, or one `NetworkError` that names the node and its elements.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from typing import TypeVar
 

@@ -4,8 +4,6 @@ Input: the laws, and what elimination found wrong with them.  Output: one `Netwo
 the elements at fault, where they meet, and what to put there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from piezo_sym.algebra.linear import Form, SingularError

@@ -8,8 +8,6 @@ verdicts       Obligation -> Row         prove; sign_analysis and signs; witness
 report         rows -> Report            report, published
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import groupby

@@ -5,8 +5,6 @@ that each property is the vanishing of a normal form, a polynomial in independen
 sums over lanes: zero proves it for every state, input, parameter and every r.
 """
 
-from __future__ import annotations
-
 from collections.abc import Container, Iterator
 from dataclasses import replace
 

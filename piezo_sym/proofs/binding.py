@@ -5,8 +5,6 @@ ones that matter.  A domain is looked through once, in `_Index`, for all questio
 it: what a question costs grows with what it needs, not with the model.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
 from typing import final

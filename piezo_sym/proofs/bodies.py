@@ -3,8 +3,6 @@
 Input: an `IPHS`.  Output: obligations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial

@@ -4,8 +4,6 @@ Input: a law.  Output: its `Branch` records, each a smooth tree and the comparis
 law is that tree; together they cover every point.
 """
 
-from __future__ import annotations
-
 from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from typing import final

@@ -7,8 +7,6 @@ it.  A law that is continuous on each of finitely many closed parts, and agrees 
 they meet, is continuous: the pasting lemma.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction

@@ -4,8 +4,6 @@ Input: an `IPHS`.  Output: obligations that conditions of the domain have values
 junction laws divide by is not zero, and the reason why nothing can be said of an empty domain.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction

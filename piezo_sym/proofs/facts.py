@@ -4,8 +4,6 @@ Input: a function, and symbols for its argument and its value.  Output: clauses.
 of a root or a logarithm each clause holds whatever the value's symbol is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from fractions import Fraction
 

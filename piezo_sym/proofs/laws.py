@@ -4,8 +4,6 @@ Input: an `IPHS`.  Output: obligations, their questions asked branch by branch. 
 words of the domain: states and temperatures by their names.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

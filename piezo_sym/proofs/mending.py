@@ -5,8 +5,6 @@ what takes power in does so where c >= 0; of c, factors that the domain keeps fr
 are left out.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import reduce
 

@@ -5,8 +5,6 @@ residual zero, every question answered with `unsat`, and everything it rests on 
 needs a witness that was evaluated exactly in the law itself.  All else is OPEN, with the reason.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction

@@ -5,8 +5,6 @@ SMT-LIB 2, which z3 and cvc5 both read.  A query asserts the opposite of its cla
 the claim.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction

@@ -10,8 +10,6 @@ A claim that follows from facts is a theorem; a counterexample to them has to be
 law itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction

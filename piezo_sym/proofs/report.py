@@ -5,8 +5,6 @@ check: ``proofs.json`` to read, ``proofs.smt2`` for a solver (``z3 proofs.smt2``
 --incremental proofs.smt2``: each ``unsat`` proves the claim in the comment above it).
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field

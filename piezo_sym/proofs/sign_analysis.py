@@ -9,8 +9,6 @@ the sign of both: the solver looks at the prefactors, interval arithmetic at ``f
 passive if each term is.  Where nothing is proved, simple numbers are tried in the law itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction

@@ -4,8 +4,6 @@ Input: a `Query`.  Output: proved, refuted by a model, or unknown with the reaso
 in a process of its own (`worker`); one that hangs, crashes or is not installed gives `unknown`.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Mapping

@@ -8,8 +8,6 @@ solved for: a change of the unit of one parameter that mends every fault at once
 mends this fault and breaks nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction

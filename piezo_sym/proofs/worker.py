@@ -6,8 +6,6 @@ result one of ``unsat``, ``sat``, ``unknown``.  A solver that hangs or crashes t
 with it, and nothing else.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -5,8 +5,6 @@ where they hold.  Each choice gives a guard and its opposite, so that the pairs 
 condition is decided after those that lead to it, since only then must it have a value.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from fractions import Fraction

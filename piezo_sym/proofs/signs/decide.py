@@ -7,8 +7,6 @@ are exact: that is Taylor's theorem.  Work is counted in derivatives on windows,
 same law gives the same decision everywhere.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from fractions import Fraction

@@ -6,8 +6,6 @@ derivative has one sign is monotone there, so it lies between its limits at the 
 most of the cancellation that intervals suffer from.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction

@@ -6,8 +6,6 @@ known to be exact (IEEE 754: the error of a rounded result is less than the step
 Functions are taken at endpoints by FLINT's ball arithmetic, and are monotone in between.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ Its length says how smooth the function is known to be: empty where f is not kno
 where f has k continuous derivatives.  Operations keep the shorter length.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import reduce
 from typing import TypeAlias

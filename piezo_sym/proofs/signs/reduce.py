@@ -7,8 +7,6 @@ factor that depends on s and on other parameters stands in front too.  Both agre
 is defined.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction

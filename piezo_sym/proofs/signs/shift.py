@@ -7,8 +7,6 @@ nearly, a value is exactly zero if it cancels as SymPy adds it up (`vanishes`), 
 ``log(1 + exp(0)) - log(2)``; each part has to have a value, and none to jump.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import lru_cache
 from typing import TypeAlias
