@@ -1,6 +1,6 @@
 """Structure coefficients as trees: exact rationals, and rational functions of transducer ratios.
 
-Input: a SymPy expression from the junction laws.  Output: a tree whose order of terms is our own,
+Input: a SymPy expression from the junction laws.  Output: a tree with its terms in a fixed order,
 so that printed text does not depend on SymPy's.
 """
 

@@ -20,24 +20,19 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Expr, names
 
-#: What SymPy is given, and what the process may take with its start.
+#: Seconds for SymPy, seconds for the process with its start, and bytes of its memory.
 SECONDS, WITH_START, MEMORY = 5, 60, 4 << 30
-#: Functions that laws have no word for, written by those that they have.
-WRITTEN_OUT = (sp.asinh, sp.acosh, sp.atanh, sp.asech, sp.acsch, sp.acoth)
-_OWN = sp.sinh, sp.cosh, sp.tanh
+#: Functions that the law language lacks, which are rewritten with logarithms.
+BY_LOGARITHMS = (sp.asinh, sp.acosh, sp.atanh, sp.asech, sp.acsch, sp.acoth)
+HYPERBOLIC = sp.sinh, sp.cosh, sp.tanh
 
 
 @lru_cache(256)
 def integral(law: Expr, name: str, positive: frozenset[str]) -> Expr | None:
-    """Return an integral of a smooth law, or None where SymPy finds none in time.
-
-    Parameters
-    ----------
-    positive : the names that are positive.
-    """
+    """Return an integral of a smooth law for `positive` names > 0; None if none is found."""
     request = json.dumps([spell(law), name, sorted(positive)])
     command = (sys.executable, "-m", "piezo_sym.algebra.integrals")
-    found = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     try:
         done = subprocess.run(
             command,
@@ -46,10 +41,13 @@ def integral(law: Expr, name: str, positive: frozenset[str]) -> Expr | None:
             text=True,
             timeout=WITH_START,
             check=False,
-            env=found,
+            env=environment,
         )
         return parse_law(done.stdout.strip(), "an integral") if done.returncode == 0 else None
-    except (subprocess.TimeoutExpired, PiezoError):  # or it is of no function that laws have
+    except (
+        subprocess.TimeoutExpired,
+        PiezoError,
+    ):  # the latter: it needs a function that laws lack
         return None
 
 
@@ -57,19 +55,19 @@ def vanishes(expr: sp.Expr) -> bool:
     """Return whether a smooth expression is shown to be zero wherever it has a value."""
     if sp.expand(expr) == 0:
         return True
-    plain = expr.rewrite(sp.exp) if expr.has(*_OWN) else expr
+    plain = expr.rewrite(sp.exp) if expr.has(*HYPERBOLIC) else expr
     return bool(sp.expand(sp.numer(sp.together(sp.expand(plain)))) == 0)
 
 
-def _found(text: str, name: str, positive: list[str]) -> str | None:
-    """Return the text of an integral whose derivative is the law."""
+def _antiderivative(text: str, name: str, positive: list[str]) -> str | None:
+    """Return the text of an integral whose derivative is shown to be the law, or None."""
     tree = parse_law(text, "law")
     known = {n: sp.Symbol(n, positive=n in positive or None, real=True) for n in names(tree)}
     law, x = to_sympy(tree, known), known[name]
     energy = sp.integrate(law, x, conds="none")
-    if isinstance(energy, sp.Piecewise):  # the generic case; others are zeros of its divisors
+    if isinstance(energy, sp.Piecewise):  # the generic case; in the others a divisor is zero
         energy = energy.args[0][0]
-    for function in WRITTEN_OUT:
+    for function in BY_LOGARITHMS:
         energy = energy.replace(function, lambda arg, f=function: f(arg).rewrite(sp.log))
     four = sp.Mul(4, sp.atan(1, evaluate=False), evaluate=False)
     energy = energy.xreplace({sp.pi: four})
@@ -82,7 +80,7 @@ def main() -> None:
     request = json.load(sys.stdin)
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     signal.alarm(SECONDS)
-    answer = _found(*request)
+    answer = _antiderivative(*request)
     if answer is None:
         sys.exit(1)
     print(answer)  # noqa: T201 - the answer

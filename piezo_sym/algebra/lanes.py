@@ -36,8 +36,8 @@ class LaneMatrix:
     full : entry for every pair of lanes.
     own : further entry where both are the same lane of one bank.
     lanes : the banks' lane symbols and sizes.
-    at : for a matrix that belongs to one lane of a bank (such as J_j), that bank: its `own`
-        entries then stand in that lane alone, also in rows and columns that no bank has.
+    at : the bank, for a matrix of one lane (such as J_j): its `own` entries then stand in that
+        lane alone, even in rows and columns outside the bank.
     """
 
     rows: tuple[Slot, ...]
@@ -88,7 +88,7 @@ class LaneMatrix:
         return LaneMatrix(self.rows, other.cols, self.lanes, _totals(full), _totals(own))
 
     def _check_lanes(self, entry: sp.Expr, row: str | None, col: str | None) -> None:
-        """Refuse an entry for two lanes of one bank that uses a lane symbol: it means either."""
+        """Refuse a lane symbol in an entry for two lanes of its bank: it could mean either lane."""
         if row and row == col and outside_sums(entry) & set(self.lanes.symbols(row)):
             what = f"an entry for two lanes of bank '{row}' depends on both"
             remedy = "write the banks out first: iphs.expand()"
@@ -104,9 +104,9 @@ class LaneMatrix:
         return len(self.rows), len(self.cols)
 
     def __getitem__(self, place: tuple[int | str, int | str] | int | str) -> sp.Expr:
-        """Return an entry by labels (``J0["p", "Q_C"]``) or places; a vector's by one of them.
+        """Return an entry by labels (``J0["p", "Q_C"]``) or indices; a vector needs the row alone.
 
-        Where both are of one bank, an entry for equal lanes only has the factor delta_jk.
+        Within one bank, what counts for equal lanes only has the factor delta_jk.
 
         Raises
         ------
@@ -147,19 +147,16 @@ class LaneMatrix:
         return not self.full and not self.own
 
     def explicit(self, counts: Mapping[str, int], lane: int = 1) -> NamedMatrix:
-        """Return the SymPy matrix for banks of the given sizes, whose entries keep their labels.
+        """Return the SymPy matrix, with labels, for banks of the sizes `counts`.
 
-        Parameters
-        ----------
-        counts : size of each bank.
-        lane : for a matrix that belongs to one lane (`at`), which one, from 1.
+        Of a matrix of one lane (`at`), `lane` is the number of that lane, from 1.
         """
         rows, cols = _places(self.rows, counts), _places(self.cols, counts)
-        made = NamedMatrix(
+        matrix = NamedMatrix(
             len(rows), len(cols), lambda r, c: self._entry(rows[r], cols[c], counts, lane)
         )
-        made.labels = _labels(self.rows, rows), _labels(self.cols, cols)
-        return made
+        matrix.labels = _labels(self.rows, rows), _labels(self.cols, cols)
+        return matrix
 
     def _entry(
         self, row: tuple[int, int], col: tuple[int, int], counts: Mapping[str, int], lane: int
@@ -174,7 +171,7 @@ class LaneMatrix:
         return entry
 
     def _is_own(self, row: tuple[int, int], col: tuple[int, int], lane: int) -> bool:
-        """Return whether `own` counts for a pair of places (slot, lane of its bank)."""
+        """Return whether `own` counts for a row and a column, each as (slot, lane of its bank)."""
         if self.at is None:
             return row[1] == col[1] and self.rows[row[0]].bank == self.cols[col[0]].bank
         places = ((self.rows[row[0]], row[1]), (self.cols[col[0]], col[1]))
@@ -183,7 +180,7 @@ class LaneMatrix:
 
 @final
 class NamedMatrix(sp.ImmutableMatrix):  # type: ignore[misc]  # SymPy has no types
-    """A SymPy matrix with entries by labels, too; what is computed from it has places alone."""
+    """A SymPy matrix with labelled rows and columns; results of operations on it have no labels."""
 
     labels: tuple[Sequence[str], Sequence[str]] = ((), ())
 

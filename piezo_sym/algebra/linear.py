@@ -63,19 +63,15 @@ def solve(
 ) -> dict[Any, Form]:
     """Return each unknown as a combination of givens.
 
-    A pivot is a number as long as there is one; a symbol that had to be divided by is added to
-    `divisors`: a proof must show that it is not zero.
-
-    Parameters
-    ----------
-    most : how many coefficients may be combined on the way.
+    Numbers are preferred as pivots.  A pivot with symbols is added to `divisors`: a proof must show
+    that it is not zero.
 
     Raises
     ------
     SingularError
         If the equations do not fix every unknown, or contradict each other.
     LongError
-        If it takes more than `most`.
+        If more than `most` coefficients would be combined on the way.
     """
     rows = [Equation(dict(row.left), dict(row.right)) for row in equations]
     users = _users(rows)
@@ -87,7 +83,7 @@ def solve(
     relations: list[Form] = []
     while waiting:
         difficulty, n = heappop(queue)
-        if waiting.get(n) != difficulty:  # outdated: done, or queued again since
+        if waiting.get(n) != difficulty:  # outdated: the row is done, or was queued again
             continue
         del waiting[n]
         row = rows[n]
@@ -97,7 +93,9 @@ def solve(
         pivot = _pivot(row, divisors)
         _normalise(row, pivot)
         for other in users.pop(pivot) - {n}:
-            _eliminate(rows[other], row, pivot)
+            factor = rows[other].left.pop(pivot)
+            combine(rows[other].left, row.left, -factor)
+            combine(rows[other].right, row.right, -factor)
             most -= len(row.left) + len(row.right)
             for label in row.left:
                 (users[label].add if label in rows[other].left else users[label].discard)(other)
@@ -115,7 +113,7 @@ def solve(
 
 
 def _users(rows: list[Equation]) -> dict[Any, set[int]]:
-    """Return the rows in which each unknown stands."""
+    """Return the rows that contain each unknown."""
     users: dict[Any, set[int]] = {}
     for n, row in enumerate(rows):
         for label in row.left:
@@ -130,12 +128,12 @@ def is_number(coefficient: Any) -> bool:
 
 
 def _difficulty(row: Equation) -> tuple[bool, int]:
-    """Order rows: those with a number to divide by first, then short ones."""
+    """Return a sort key: rows with a numeric pivot first, then by length."""
     return bool(row.left) and not any(map(is_number, row.left.values())), len(row.left)
 
 
 def _pivot(row: Equation, divisors: list[Any]) -> Any:
-    """Return the unknown to solve a row for: one with a number if there is one."""
+    """Return the unknown to solve a row for: one with a numeric coefficient if there is one."""
     pivot = next((k for k, v in row.left.items() if is_number(v)), next(iter(row.left)))
     if not is_number(row.left[pivot]):
         divisors.append(row.left[pivot])
@@ -147,10 +145,3 @@ def _normalise(row: Equation, pivot: Label) -> None:
     scale = 1 / row.left.pop(pivot)
     row.left = {label: scale * value for label, value in row.left.items()}
     row.right = {label: scale * value for label, value in row.right.items()}
-
-
-def _eliminate(other: Equation, row: Equation, pivot: Label) -> None:
-    factor = other.left.pop(pivot, None)
-    if factor is not None:
-        combine(other.left, row.left, -factor)
-        combine(other.right, row.right, -factor)

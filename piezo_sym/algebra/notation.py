@@ -36,13 +36,13 @@ def text(expr: sp.Expr) -> str:
 
 
 def _with_magnitudes(expr: sp.Expr, magnitude: Any) -> sp.Expr:
-    """Return an expression with ``abs`` and ``sign`` in place of the branches they stand for."""
+    """Return an expression with branches written as ``abs`` and ``sign`` where they are those."""
     known = {choice: _named(choice, magnitude) for choice in expr.atoms(sp.Piecewise)}
     return expr.xreplace({choice: named for choice, named in known.items() if named is not None})
 
 
 def _named(choice: sp.Piecewise, magnitude: Any) -> sp.Expr | None:
-    """Return a choice as the magnitude or the sign of something, if it is one."""
+    """Return a choice as a magnitude or a sign, or None if it is neither."""
     (first, condition), (second, other), *last = choice.args
     if not isinstance(condition, sp.StrictGreaterThan | sp.GreaterThan):
         return None
@@ -97,7 +97,7 @@ def matrix_latex(rows: Sequence[Slot], cols: Sequence[Slot], full: Entries, own:
 
 
 def _dotted(cols: Sequence[Slot], cells: Sequence[str], dots: str) -> list[str]:
-    """Return the cells of a line, those of a bank's column with dots on both sides."""
+    """Return the cells of a row, with dots on both sides of a bank's column."""
     parts = [
         (dots, cell, dots) if col.bank else (cell,) for col, cell in zip(cols, cells, strict=True)
     ]
@@ -113,7 +113,7 @@ def _latex_cell(full: sp.Expr, own: sp.Expr | None) -> str:
 
 
 def matrix_text(rows: Sequence[Slot], cols: Sequence[Slot], full: Entries, own: Entries) -> str:
-    """Return a matrix as an aligned grid; ``[j=k]`` marks an entry of equal lanes only."""
+    """Return a matrix as an aligned grid; ``[j=k]`` marks an entry for equal lanes only."""
     grid = [["", *(slot_text(col) or "." for col in cols)]]
     for r, row in enumerate(rows):
         cells = [_text_cell(full.get((r, c), sp.S.Zero), own.get((r, c))) for c in range(len(cols))]

@@ -18,19 +18,19 @@ from sympy.printing.precedence import PRECEDENCE
 class LaneSymbol(sp.Symbol):  # type: ignore[misc]
     """A quantity of a bank's lane j, spelled ``<quantity>_j``.
 
-    It is never equal to a symbol of the same spelling: its quantity and its bank belong to it.
+    Quantity and bank are part of its identity, so it never equals a plain symbol of that spelling.
     """
 
     __slots__ = ("bank", "quantity")
 
     def __new__(cls, quantity: str, bank: str, **assumptions: bool) -> LaneSymbol:
         """Return the symbol of a quantity in lane j of a bank."""
-        made: LaneSymbol = sp.Symbol.__xnew__(cls, f"{quantity}_j", **assumptions)
-        made.quantity, made.bank = quantity, bank
-        return made
+        symbol: LaneSymbol = sp.Symbol.__xnew__(cls, f"{quantity}_j", **assumptions)
+        symbol.quantity, symbol.bank = quantity, bank
+        return symbol
 
     def __getnewargs_ex__(self) -> tuple[tuple[str, str], dict[str, bool]]:
-        """Return what makes the symbol again in another process."""
+        """Return the arguments that make the symbol again when it is unpickled."""
         return (self.quantity, self.bank), dict(self._assumptions_orig)
 
     def _hashable_content(self) -> tuple[Any, ...]:
@@ -46,13 +46,12 @@ class SymbolicLaneSum(sp.Expr):  # type: ignore[misc]
 
     def __new__(cls, arg: sp.Expr, bank: str | Str) -> SymbolicLaneSum:
         """Return the sum of `arg` over the lanes of `bank`, as it stands."""
-        made: SymbolicLaneSum = sp.Expr.__new__(
-            cls, arg, bank if isinstance(bank, Str) else Str(bank)
-        )
-        return made
+        bank = bank if isinstance(bank, Str) else Str(bank)
+        total: SymbolicLaneSum = sp.Expr.__new__(cls, arg, bank)
+        return total
 
     def has(self, *patterns: Any) -> bool:
-        """Return whether a pattern stands in it; no choice: SymPy would take it out of the sum."""
+        """Return whether it contains a pattern; hides choices, which SymPy would move outside."""
         return bool(super().has(*(p for p in patterns if p is not sp.Piecewise)))
 
     def _latex(self, printer: Any, exp: Any = None) -> str:
@@ -65,7 +64,7 @@ class SymbolicLaneSum(sp.Expr):  # type: ignore[misc]
 
 
 def outside_sums(expr: sp.Basic) -> frozenset[sp.Symbol]:
-    """Return the symbols of `expr` that do not stand inside a sum over lanes."""
+    """Return the symbols of `expr` outside of sums over lanes."""
     if isinstance(expr, SymbolicLaneSum):
         return frozenset()
     if isinstance(expr, sp.Symbol):
@@ -76,7 +75,7 @@ def outside_sums(expr: sp.Basic) -> frozenset[sp.Symbol]:
 @final
 @dataclass(frozen=True)
 class Lanes:
-    """What sums over lanes need to know: the bank of each lane symbol, the size of each bank."""
+    """The bank of each lane symbol and the size of each bank, for sums over lanes."""
 
     banks: Mapping[LaneSymbol, str]
     counts: Mapping[str, sp.Symbol]
@@ -94,7 +93,7 @@ class Lanes:
         return total
 
     def _split(self, term: sp.Expr, bank: str) -> tuple[sp.Expr, sp.Expr]:
-        """Return a product as (factors free of the bank's lane, the others)."""
+        """Return a product as (factors without lane symbols of the bank, the others)."""
         parts: tuple[list[sp.Expr], list[sp.Expr]] = ([], [])
         for factor in sp.Mul.make_args(term):
             lane = any(self.banks.get(symbol) == bank for symbol in outside_sums(factor))
@@ -107,8 +106,12 @@ class Lanes:
 
     def at(self, expr: sp.Expr, bank: str, lane: int) -> sp.Expr:
         """Return `expr` in lane number `lane` of `bank`: ``phi_j`` becomes ``phi_<lane>``."""
-        names = {symbol: _numbered(symbol, lane) for symbol in self.symbols(bank)}
-        return expr.xreplace(names)
+        return expr.xreplace(
+            {
+                symbol: sp.Symbol(f"{symbol.quantity}_{lane}", **symbol.assumptions0)
+                for symbol in self.symbols(bank)
+            }
+        )
 
     def expand(self, expr: sp.Expr, counts: Mapping[str, int]) -> sp.Expr:
         """Return `expr` with every sum over lanes written out, for banks of the given sizes."""
@@ -119,7 +122,3 @@ class Lanes:
 
         sizes = {symbol: sp.Integer(counts[bank]) for bank, symbol in self.counts.items()}
         return expr.replace(SymbolicLaneSum, written).xreplace(sizes)
-
-
-def _numbered(symbol: LaneSymbol, lane: int) -> sp.Symbol:
-    return sp.Symbol(f"{symbol.quantity}_{lane}", **symbol.assumptions0)

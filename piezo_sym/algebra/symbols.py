@@ -43,7 +43,7 @@ TABLE = sp.Function("table")
 
 
 class Raised(sp.Function):  # type: ignore[misc]
-    """x**w for x >= 0, w > 0, which stays as it is written: a `Pow` may be taken apart."""
+    """x**w for x >= 0, w > 0, kept as written: SymPy may take a `Pow` apart."""
 
     _imp_ = staticmethod(pow)
     is_extended_real = True
@@ -51,7 +51,7 @@ class Raised(sp.Function):  # type: ignore[misc]
 
     @classmethod
     def eval(cls, x: sp.Expr, w: sp.Expr) -> sp.Expr | None:
-        """Return the power of numbers, and of zero; none where it has no value."""
+        """Return the power of numbers, nan where it has no value, and 0 for x = 0; else None."""
         if x.is_zero and w.is_positive:
             return sp.S.Zero
         if not (x.is_number and w.is_number):
@@ -81,29 +81,29 @@ class SymbolTable:
     symbols : the symbol of every name; that of a bank's quantity is a `LaneSymbol`.
     banks : the bank of each lane symbol.
     counts : the size symbol of each bank.
-    whole : whether a `table` stays one function instead of its pieces, for display.
+    keep_tables : whether a `table` stays one function instead of its pieces, for display.
     """
 
     symbols: Mapping[str, sp.Symbol]
     banks: Mapping[LaneSymbol, str]
     counts: Mapping[str, sp.Symbol]
-    whole: bool = False
+    keep_tables: bool = False
 
     def __getitem__(self, name: str) -> sp.Symbol:
         """Return the symbol of a name."""
         return self.symbols[name]
 
     def law(self, tree: Expr, letters: Mapping[str, sp.Expr]) -> sp.Expr:
-        """Return a law as a SymPy expression, its letters replaced by what they stand for.
+        """Return a law as a SymPy expression, its letters replaced by the given expressions.
 
         Raises
         ------
         SpecError
-            If it compares what is not real, such as ``log(sign(v)) < 1`` where v is negative.
+            If a side of a comparison is not real, such as ``log(sign(v)) < 1`` for v < 0.
         """
-        words = {n: (letters if n in letters else self)[n] for n in names(tree)}
+        table = {n: (letters if n in letters else self)[n] for n in names(tree)}
         try:
-            return to_sympy(tree, words | {"table": TABLE} if self.whole else words)
+            return to_sympy(tree, table | {"table": TABLE} if self.keep_tables else table)
         except TypeError as error:
             what = f"the law {quote(spell(tree))} compares what has no real value somewhere"
             remedy = "keep its logarithms, roots and quotients defined"
@@ -132,7 +132,7 @@ def symbol_table(circuit: Circuit) -> SymbolTable:
 
 
 def _quantities(port: Port) -> tuple[str, ...]:
-    """Return the names that a port gives to quantities."""
+    """Return the names of the quantities that a port defines."""
     match port:
         case Conductor():
             return (port.output,)
@@ -153,7 +153,7 @@ def _symbol(name: str, bank: str | None, sign: Mapping[str, bool] | None) -> sp.
 
 
 def _signs(model: Model) -> dict[str, dict[str, bool]]:
-    """Return what the domain says of single parameters and inputs: > 0 or >= 0."""
+    """Return the SymPy assumption on each parameter or input that the domain bounds by zero."""
     found: dict[str, dict[str, bool]] = {}
     for condition in conditions(model):
         match greater(condition.tree):
@@ -167,7 +167,7 @@ def _signs(model: Model) -> dict[str, dict[str, bool]]:
 def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
     """Return a law's tree as a SymPy expression over the symbols in `table`.
 
-    A piecewise linear function that is in `table` is what it says there.
+    A ``table`` function that is in `table` stays one function instead of its pieces.
     """
     match node:
         case Num(value):
@@ -205,18 +205,18 @@ def _choice(op: str, then: sp.Expr, other: sp.Expr, left: sp.Expr, right: sp.Exp
 
 
 def _relation(op: str, left: sp.Expr, right: sp.Expr) -> Any:
-    """Return a comparison; one of sums as the sign of their difference.
+    """Return a comparison; where a side is a sum, of the difference with zero.
 
-    SymPy takes very long to order the sides where both share terms of a sum.
+    SymPy takes very long to order two sums that share terms.
     """
     plain = right.is_number or not (left.is_Add or right.is_Add)
     return RELATIONS[op](left, right) if plain else RELATIONS[op](left - right, 0)
 
 
 def _by_branches(build: Callable[..., sp.Expr], args: tuple[sp.Expr, ...]) -> sp.Expr:
-    """Return ``build(*args)``, chosen by the branches of what chooses in `args`.
+    """Return ``build(*args)`` with the choices inside `args` moved outside.
 
-    Conditions then contain no choices; with one inside, SymPy would try to solve the inequality.
+    Conditions then contain no choices: SymPy would try to solve the inequality.
     """
     choice = next((found for arg in args for found in _choices(arg)), None)
     if choice is None:
@@ -226,7 +226,7 @@ def _by_branches(build: Callable[..., sp.Expr], args: tuple[sp.Expr, ...]) -> sp
 
 
 def _choices(expr: sp.Basic) -> Iterator[sp.Piecewise]:
-    """Yield the choices in an expression, outermost first, but for those inside sums over lanes."""
+    """Yield the choices in an expression outside of sums over lanes, outermost first."""
     if isinstance(expr, sp.Piecewise):
         yield expr
     elif not isinstance(expr, SymbolicLaneSum):
@@ -238,7 +238,7 @@ RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge}
 
 
 def _kinked(function: str, *args: sp.Expr) -> sp.Expr:
-    """Return a function with kinks as its branches."""
+    """Return a function with kinks as a `Piecewise`."""
     law, table, cases = parse_rule(RECORDS[function].choices), {"x": args[0], "w": args[-1]}, []
     while isinstance(law, If):
         left, right = (to_sympy(side, table) for side in (law.condition.left, law.condition.right))

@@ -1,4 +1,4 @@
-"""Irreversible port-Hamiltonian systems: Definition 1 of the paper, and how it is read."""
+"""Irreversible port-Hamiltonian systems: Definition 1 of the paper, and its display."""
 
 from piezo_sym.iphs.iphs import IPHS, Process, iphs_of
 

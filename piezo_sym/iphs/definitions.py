@@ -41,12 +41,12 @@ def costate_name(port: Storage | Body) -> str:
 
 
 def heated(port: DissipativePort | Conductor) -> str:
-    """Return the element of the body that a process heats; for conduction, the second."""
+    """Return the name of the body that a process heats; of conduction, the second one."""
     return port.heats if isinstance(port, DissipativePort) else port.second
 
 
 def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> System:
-    """Return Definition 1 over a junction: E, W and u by their symbols."""
+    """Return Definition 1 of a solved junction, E, W and u being symbols."""
     lanes = junction.J0.lanes
     stores = tuple(circuit.of(Storage, Body))
     rows = {placed.element: n for n, (placed, port) in enumerate(stores) if isinstance(port, Body)}
@@ -74,7 +74,7 @@ def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> Sys
 
 
 def _input(port: object, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
-    """Return the input of Definition 1 behind a port: itself, P/T or lam*(T_e/T - 1)."""
+    """Return a port's entry of the input vector u: its input, P/T or lam*(T_e/T - 1)."""
     match port:
         case Source():
             return symbols[port.input]
@@ -96,15 +96,15 @@ class Energy:
     Attributes
     ----------
     law : a function of states and parameters.
-    rows : the states that it is of, by their place among all.
-    bank : whose lanes have such an energy each, or None.
-    found : whether it was found for a law, and no spec gives it.
+    rows : the indices of the states that it depends on.
+    bank : the bank, if each of its lanes has such an energy.
+    derived : whether it was integrated from a co-state law; else the spec gives it.
     """
 
     law: Expr
     rows: tuple[int, ...]
     bank: str | None
-    found: bool
+    derived: bool
 
 
 def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
@@ -124,14 +124,12 @@ def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
         law = port.energy or _integral(placed.element, port, positive)
         key = law, placed.bank, port.energy is None
         rows[key] = (*rows.get(key, ()), n)
-    return tuple(Energy(law, own, bank, found) for (law, bank, found), own in rows.items())
+    return tuple(Energy(law, own, bank, derived) for (law, bank, derived), own in rows.items())
 
 
 def _integral(element: str, port: Storage | Body, positive: frozenset[str]) -> Expr:
-    """Return the integral of a co-state law by its state; `positive` names are > 0."""
-    law, state = port.law, port.state
-
-    energy = antiderivative(law, state, integral, positive)
+    """Return the integral of a co-state law over its state; `positive` names are > 0."""
+    energy = antiderivative(port.law, port.state, integral, positive)
     if energy is None:
         what = f"no integral of the law {quote(spell(port.law))} by {port.state} is found"
         expected = "one of the functions of laws, found by SymPy in 5 s"
@@ -144,7 +142,7 @@ Definitions = Iterator[tuple[sp.Symbol, sp.Expr]]
 
 
 def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitions:
-    """Yield each law output W and its law in z, temperatures and states."""
+    """Yield each law output W with its law in z, temperatures and states."""
     for (_, port), z in zip(circuit.of(DissipativePort, Conductor), system.z, strict=True):
         if isinstance(port, DissipativePort):
             letters = {port.letter: z, port.rate_letter: symbols.symbols.get(port.rate, z)}
@@ -155,10 +153,10 @@ def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitio
 
 
 def rates_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitions:
-    """Yield the rate that each slip goes by: that of its store's state, but for the slip itself.
+    """Yield the rate that drives each slip: that of its store's state without the slip itself.
 
-    The driving force of a slip is its store's co-state, so no other row has the slip in it: a rate
-    depends on co-states, inputs and outputs of processes that are no slips.
+    The driving force of a slip is its store's co-state, so the slip stands in no other row: rates
+    depend on co-states, inputs and outputs of other processes, but on no slip.
     """
     slips = {port.state: port for _, port in circuit.of(DissipativePort) if port.rate}
     if slips:
@@ -174,9 +172,9 @@ def check_stops(
     rates: Iterable[tuple[sp.Symbol, sp.Expr]],
     laws: Iterable[tuple[sp.Symbol, sp.Expr]],
 ) -> None:
-    """Refuse a stop whose rate depends on the effort of a stop: it would have to be found with it.
+    """Refuse a stop whose rate depends on the effort of a stop: that would be an implicit equation.
 
-    Laws are of co-states, inputs and states alone, so that putting them in once is enough.
+    Laws depend on co-states, inputs and states alone, so inserting them once is enough.
 
     Raises
     ------
@@ -203,7 +201,7 @@ def check_stops(
 
 
 def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
-    """Yield each ratio and its law in temperatures and states."""
+    """Yield each coupling's ratio with its law in temperatures and states."""
     for _, port in circuit.of(Coupling):
         yield symbols[port.name], symbols.law(port.ratio, {})
 
@@ -215,7 +213,7 @@ def slopes_of(symbols: SymbolTable, slopes: tuple[Slope, ...]) -> Definitions:
 
 
 def starts_of(junction: Junction) -> Iterator[tuple[Expr, ...]]:
-    """Yield the initial value of each state, one or one per lane: of joined stores Z^T x."""
+    """Yield the initial value of each state, one per lane of a bank; Z^T x for joined stores."""
     model = junction.circuit.model
     joints = {m.store.state: joint for joint in junction.joints for m in joint.kept}
     for state in (slot.label for slot in junction.states):
@@ -224,6 +222,6 @@ def starts_of(junction: Junction) -> Iterator[tuple[Expr, ...]]:
 
 
 def costates_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
-    """Yield each co-state and its law in the state."""
+    """Yield each co-state with its law in the state."""
     for _, port in circuit.of(Storage, Body):
         yield symbols[costate_name(port)], symbols.law(port.law, {})

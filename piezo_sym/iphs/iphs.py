@@ -1,8 +1,8 @@
 """The irreversible port-Hamiltonian system of a model, as mathematics to read, prove and print.
 
 Input: a `Circuit` and its junction.  Output: an `IPHS`: Definition 1 in named co-states (`system`),
-what each name stands for (`definitions`), the energy U, and everything again as functions of the
-state, the inputs and the parameters, which is what most users want to look at.
+the definition of each name (`definitions`), the energy U, and everything as functions of state,
+inputs and parameters, which is what most users look at.
 """
 
 from __future__ import annotations
@@ -53,10 +53,10 @@ class Process:
     name, bank : the element, and its bank if it stands for one per lane.
     body : the thermal mass it heats.
     J : its skew structure matrix; for a bank that of lane j, ``J.explicit(counts, lane=j)``.
-    bracket : {S, U}_J, its driving force z where no input drives it directly.
+    bracket : {S, U}_J, which is its driving force z where no input drives it directly.
     R : its modulating function W/T, eq. (4).
-    gamma : R over the driving force z, which is the bracket and what inputs add to it: W/(T z);
-        0/0 at z = 0, where only R is used.
+    gamma : R/z = W/(T z), z being the bracket plus the terms of inputs; 0/0 at z = 0, where only R
+        is used.
     """
 
     name: str
@@ -75,12 +75,12 @@ class IPHS:
 
     Attributes
     ----------
-    model, circuit, symbols : where it comes from, and its names.
+    model, circuit, symbols : its origin, and the symbols of its names.
     system : Definition 1 in named co-states.
-    junction : the solved network, where the matrices of `system` come from.
-    energies : what U is the sum of: of one store, or of several that share one.
-    starts : the initial value of each state, one or one per lane.
-    laws, rates, shares, slopes, ratios, costates : what the names in `system` stand for, as
+    junction : the solved network, the origin of the matrices of `system`.
+    energies : the terms of U, each of one store or of several that share one.
+    starts : the initial value of each state, one per lane of a bank.
+    laws, rates, shares, slopes, ratios, costates : definitions of the names in `system`, as
         (symbol, expression).
 
     Vectors and matrices are SymPy matrices, or `LaneMatrix` where a bank keeps its size a symbol;
@@ -105,12 +105,12 @@ class IPHS:
     def x(self) -> Matrix:
         """State vector, n by 1."""
         names = {n: self.symbols[slot.label] for n, slot in enumerate(self.system.states)}
-        return self._shown(vector(self.system.states, self.system.E.lanes, names))
+        return self._written_out(vector(self.system.states, self.system.E.lanes, names))
 
     @cached_property
     def u(self) -> Matrix:
         """Inputs of Definition 1, one per port; a heat exchange enters as lam*(T_e/T - 1)."""
-        return self._shown(self.system.u)
+        return self._written_out(self.system.u)
 
     @cached_property
     def U(self) -> sp.Expr:
@@ -119,7 +119,7 @@ class IPHS:
 
     @cached_property
     def _stored(self) -> tuple[sp.Expr, ...]:
-        """The energies, a bank's summed over its lanes."""
+        """The terms of U, summed over the lanes of a bank."""
         sums, terms = self.system.E.lanes.sum, []
         for energy in self.energies:
             term = self.symbols.law(energy.law, {})
@@ -135,37 +135,37 @@ class IPHS:
     @cached_property
     def E(self) -> Matrix:
         """Co-states dU/dx, n by 1."""
-        return self._shown(self.system.E)
+        return self._written_out(self.system.E)
 
     @cached_property
     def J0(self) -> Matrix:
         """Structure matrix of the energy-preserving elements, n by n, eq. (15)."""
-        return self._shown(self.system.J0)
+        return self._written_out(self.system.J0)
 
     @cached_property
     def J_ir(self) -> Matrix:
         """Structure matrix J0 + sum_k R_k J_k, n by n, eq. (3)."""
-        return self._shown(self.system.J_ir)
+        return self._written_out(self.system.J_ir)
 
     @cached_property
     def g(self) -> Matrix:
         """Input map, n by ports."""
-        return self._shown(self.system.g)
+        return self._written_out(self.system.g)
 
     @cached_property
     def rhs(self) -> Matrix:
         """Rates dx/dt, n by 1, eq. (1)."""
-        return self._shown(self.system.rhs)
+        return self._written_out(self.system.rhs)
 
     @cached_property
     def y(self) -> Matrix:
         """Outputs conjugate to u, ports by 1, eq. (2)."""
-        return self._shown(self.system.y)
+        return self._written_out(self.system.y)
 
     @cached_property
     def y_s(self) -> Matrix:
         """Entropy-conjugate outputs g^T dS/dx, ports by 1, eq. (5)."""
-        return self._shown(self.system.y_s)
+        return self._written_out(self.system.y_s)
 
     @cached_property
     def sigma(self) -> sp.Expr:
@@ -186,7 +186,7 @@ class IPHS:
         )
         R, z = system.R[k, 0], system.z[k, 0]
         bracket = self.in_states(system.bracket[k, 0])
-        parts = (self._shown(system.J(k)), bracket, self.in_states(R), self.in_states(R / z))
+        parts = (self._written_out(system.J(k)), bracket, self.in_states(R), self.in_states(R / z))
         return Process(slot.label, slot.bank, body, *parts)
 
     def in_states(self, expr: sp.Expr) -> sp.Expr:
@@ -197,28 +197,20 @@ class IPHS:
 
     @property
     def named(self) -> tuple[Pairs, ...]:
-        """The definitions in the order in which they are put in, but for co-states.
+        """The definitions without those of co-states, in the order of their insertion.
 
-        The rate of a slip may depend on laws, those of no slips.
+        Laws come twice, as the rate of a slip depends on the laws of other processes.
         """
         return (self.laws, self.rates, self.laws, self.shares, self.slopes, self.ratios)
 
-    def _shown(self, matrix: LaneMatrix) -> Matrix:
+    def _written_out(self, matrix: LaneMatrix) -> Matrix:
         matrix = matrix.map(self.in_states)
         return matrix if banks(self.model) else matrix.explicit({})
 
     def expand(self, counts: Mapping[str, int] | None = None) -> IPHS:
-        """Return the system with its banks written out lane by lane, derived anew from the parts.
+        """Return the system derived anew with each lane as an element ``<bank>_<j>``.
 
-        Parameters
-        ----------
-        counts : size of each bank; the spec's own where nothing is said.
-
-        Returns
-        -------
-        IPHS
-            Of the model in which each lane is an element ``<bank>_<j>`` with its own state; its
-            vectors and matrices are SymPy matrices.
+        Sizes of banks are from `counts`, else the spec's own.  Its matrices are SymPy matrices.
         """
         circuit = circuit_of(unroll(self.model, {**banks(self.model), **(counts or {})}))
         symbols = symbol_table(circuit)
@@ -235,27 +227,27 @@ class IPHS:
 
     @cached_property
     def reading(self) -> Reading:
-        """The system as it is read: co-states written out, laws by their names."""
-        hidden = {self.symbols[port.temperature] for _, port in self.circuit.of(Body)}
-        shown = tuple((s, e) for s, e in self.costates if s not in hidden)
-        heat = tuple((s, e) for s, e in self.costates if s in hidden)
-        whole = replace(self.symbols, whole=True)
-        laws = laws_of(self.circuit, whole, self.system)
-        ratios = ratios_of(self.circuit, whole)
-        named = (*laws, *self.rates, *self.shares, *self.slopes, *ratios, *heat)
-        return Reading(self.system, self._stored, shown, named, self._spelled(dict(shown)))
+        """The system for display: co-states written out, laws and temperatures by their names."""
+        hot = {self.symbols[port.temperature] for _, port in self.circuit.of(Body)}
+        written = tuple((s, e) for s, e in self.costates if s not in hot)
+        temperatures = tuple((s, e) for s, e in self.costates if s in hot)
+        symbols = replace(self.symbols, keep_tables=True)
+        laws = laws_of(self.circuit, symbols, self.system)
+        ratios = ratios_of(self.circuit, symbols)
+        named = (*laws, *self.rates, *self.shares, *self.slopes, *ratios, *temperatures)
+        return Reading(self.system, self._stored, written, named, self._spelled(dict(written)))
 
-    def _spelled(self, shown: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, str]:
-        """Return each dissipative law as the spec spells it, and what its letter is."""
-        found = {}
+    def _spelled(self, written: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, str]:
+        """Return each dissipative law as the spec spells it, with the definition of its letter."""
+        spelled = {}
         processes = self.circuit.of(DissipativePort, Conductor)
         for (_, port), z in zip(processes, self.system.z, strict=True):
             if isinstance(port, Conductor):
                 continue
-            effort = f"{port.letter} = {text(z.xreplace(shown))}"
+            effort = f"{port.letter} = {text(z.xreplace(written))}"
             rate = f", {port.rate_letter} = {port.rate}" if port.rate else ""
-            found[self.symbols[port.output]] = f"{spell(port.law)}, {effort}{rate}"
-        return found
+            spelled[self.symbols[port.output]] = f"{spell(port.law)}, {effort}{rate}"
+        return spelled
 
     def latex(self) -> str:
         """Return LaTeX of x, S, co-states, J0, each J_k, bracket, R_k, gamma_k, J_ir, g, u, y."""

@@ -1,7 +1,7 @@
-"""A system as people read it: rates and laws term by term, in LaTeX or plain text.
+"""The display of a system: rates and laws term by term, in LaTeX or plain text.
 
-Input: a `System`, and which of its names are written out (velocities as p/M) and which are
-explained below the equations (laws, ratios, temperatures).  Output: text, one equation per line.
+Input: a `System`, its names that are written out (velocities as p/M), and those that are defined
+below the equations (laws, ratios, temperatures).  Output: text, one equation per line.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -23,15 +23,15 @@ Print = Callable[[sp.Expr], str]
 @final
 @dataclass(frozen=True)
 class Reading:
-    """How a system is read.
+    """A system with what its display needs.
 
     Attributes
     ----------
     system : in named co-states.
     energies : the terms of the Hamiltonian, as functions of the state.
-    written : names replaced by what they stand for, such as p/M for the velocity.
-    named : names kept, and explained after the equations.
-    spelled : what a law's name stands for, in the words of the spec, for plain text.
+    written : names replaced by their definitions, such as a velocity by p/M.
+    named : names kept, and defined after the equations.
+    spelled : the definition of a law output as the spec spells it, for plain text.
     """
 
     system: System
@@ -45,7 +45,7 @@ class Reading:
         return expr.xreplace(dict(self.written))
 
     def rates(self, row: int) -> list[sp.Expr]:
-        """Return the terms of one rate: structure, then processes, then inputs."""
+        """Return the terms of one rate: from J0, then from processes, then from inputs."""
         system = self.system
         terms = [
             *_terms(system.J0, system.E, row),
@@ -71,13 +71,13 @@ class Reading:
         return [self.write(self._total(k, r * z[k, 0])) for k, r in enumerate(R)]
 
     def gamma(self, k: int) -> sp.Expr:
-        """Return gamma_k = W_k/(T z_k), the law written out where it has no branches."""
+        """Return gamma_k = W_k/(T z_k), with the law written out unless it has branches."""
         outputs = set(self.system.W)
         laws = {s: e for s, e in self.named if s in outputs and not e.has(*BRANCHED)}
         return self.write(self.system.R[k, 0].xreplace(laws) / self.system.z[k, 0])
 
     def _heating(self, k: int) -> sp.Expr:
-        """Return what a process brings to the entropy of the body that it heats."""
+        """Return a process's term in the entropy rate of the body that it heats."""
         return self._total(k, self.system.R[k, 0] * self.system.drive[k, 0])
 
     def _total(self, k: int, term: sp.Expr) -> sp.Expr:
@@ -86,7 +86,7 @@ class Reading:
 
 
 def _terms(block: LaneMatrix, given: LaneMatrix, row: int) -> Iterator[sp.Expr]:
-    """Yield the terms of ``(block @ given)[row]``, products kept as they are."""
+    """Yield the terms of ``(block @ given)[row]`` without expanding products."""
     for (r, c), full, own in block.entries():
         if r == row:
             value, bank = given[c, 0], block.cols[c].bank

@@ -5,8 +5,8 @@ Input: a junction, the symbols of co-states E, law outputs W and inputs u.  Outp
     xdot = J_ir E + g u        J_ir = J0 + sum_k R_k J_k        R_k = W_k/T_k        (1), (3), (4)
 
 where J_k couples the vector b_k of process k to the entropy of the body that it heats.  Here E, W,
-T and the ratios are symbols; what they are as functions of the state is said once, in `iphs`.
-Proofs close on this form, and generated code follows it line by line.
+T and the ratios are symbols; `definitions` gives them as functions of the state.  Proofs are about
+this form, and generated code follows it line by line.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from typing import final
 
 import sympy as sp
 
-from piezo_sym.algebra.lanes import LaneMatrix, Slot, vector
+from piezo_sym.algebra.lanes import ONE_SLOT, LaneMatrix, Slot, vector
 from piezo_sym.algebra.notation import Entries
 
 
@@ -31,7 +31,7 @@ class System:
     dS : gradient of the total entropy, a vector over states: 1 at each body's entropy.
     u : the inputs of Definition 1, over ports; a heat exchange enters as lam*(T_e/T - 1).
     W : law outputs, over processes.
-    heats : for each process the row of the entropy that it feeds.
+    heats : for each process the row of the entropy that it increases.
     J0 : structure matrix of the energy-preserving elements, states by states.
     B, D : columns b_k, d_k of the processes: z = B^T E + D^T u is conjugate to W.
     G : input map of the junction laws, states by ports.
@@ -69,13 +69,13 @@ class System:
 
         That is b_k^T E, less the temperature of the heated body where b_k takes from an entropy.
         """
-        given = self.B.T @ self.dS
-        taken = {k: share * self.E[self.heats[k], 0] for k, share in enumerate(given)}
+        shares = self.B.T @ self.dS
+        taken = {k: share * self.E[self.heats[k], 0] for k, share in enumerate(shares)}
         return self.B.T @ self.E - vector(self.processes, self.E.lanes, taken)
 
     @cached_property
     def z(self) -> LaneMatrix:
-        """The driving forces, and what inputs add to them, over processes."""
+        """The driving forces z, brackets plus terms of inputs, over processes."""
         return self.bracket + self.D.T @ self.u
 
     @cached_property
@@ -110,20 +110,17 @@ class System:
         return (self.R.T @ self.z)[0, 0]
 
     def J(self, k: int) -> LaneMatrix:
-        """Return J_k; for a bank, its lane j's: entries `own` stand in that lane alone."""
-        entropy = self._unit(self.heats[k])
-        full = _column(self.B.full, k), _column(self.B.own, k)
-        b, own = (LaneMatrix(self.states, (Slot(""),), self.B.lanes, part) for part in full)
+        """Return J_k; for a bank that of lane j: `own` entries stand in that lane alone."""
+        entropy = vector(self.states, self.E.lanes, {self.heats[k]: sp.S.One})
+        columns = _column(self.B.full, k), _column(self.B.own, k)
+        b, own = (LaneMatrix(self.states, ONE_SLOT, self.B.lanes, column) for column in columns)
         shared, lane = (entropy @ v.T - v @ entropy.T for v in (b, own))
         bank = self.processes[k].bank
         return LaneMatrix(self.states, self.states, self.B.lanes, shared.full, lane.full, bank)
 
-    def _unit(self, row: int) -> LaneMatrix:
-        return vector(self.states, self.E.lanes, {row: sp.S.One})
-
     @cached_property
     def _heating(self) -> LaneMatrix:
-        """The modulating functions as a matrix, R_k at the entropy that process k feeds."""
+        """The modulating functions as a matrix, R_k in the column of the entropy it increases."""
         entries = {(k, self.heats[k]): r for k, r in enumerate(self.R) if r != 0}
         return LaneMatrix(self.processes, self.states, self.R.lanes, entries)
 

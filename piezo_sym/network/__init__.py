@@ -1,4 +1,4 @@
-"""Networks: who is connected to whom, solved exactly; a circuit to its junction structure."""
+"""Networks: the junction laws of a circuit, solved exactly for its junction structure."""
 
 from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.junction import Junction, junction_of

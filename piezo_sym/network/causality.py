@@ -1,10 +1,10 @@
-"""Causality: which of its two variables each resistor and store gives, and which it is given.
+"""Causality: which of its two variables each resistor and store imposes.
 
-Input: a `Circuit`.  Output: the same circuit in which laws that are linear in their variable are
-turned round where the junction laws ask for it (an amplifier's output resistance before a bank of
-hysterons is given the current, whether its law says ``voltage = "R*i"`` or ``current = "v/R"``).
-A law that is not linear keeps its causality; if that cannot be, the network is refused by name.
-Stores whose co-states the junction laws tie to earlier ones are given theirs.
+Input: a `Circuit`.  Output: the same circuit with linear laws turned round where the junction laws
+need it (an amplifier's output resistance before a bank of hysterons takes the current, whether its
+law says ``voltage = "R*i"`` or ``current = "v/R"``).  A law that is not linear keeps its causality;
+if that cannot be, the network is refused, naming the elements.  Stores whose co-states the junction
+laws tie to those of earlier stores follow them: they impose their rate.
 """
 
 from typing import Any
@@ -14,7 +14,7 @@ from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError, quote
 from piezo_sym.expressions.tree import names
 from piezo_sym.network.inverse import constant_slope, turn, vanishes
-from piezo_sym.network.kirchhoff import Laws
+from piezo_sym.network.kirchhoff import Laws, term_of
 from piezo_sym.network.refusals import couplings_in, refusal
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import Body, DissipativePort
@@ -23,11 +23,11 @@ from piezo_sym.spec.elements.ports import Body, DissipativePort
 MOST_WORK = 1_000_000
 
 
-def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
+def causal_laws(circuit: Circuit, symbols: SymbolTable) -> Laws:
     """Return the junction laws of a circuit, in a causality in which they have a solution.
 
-    Each turn of a linear law resolves one contradiction between variables that are given; a law is
-    turned once at most, so this ends.
+    Each turn of a linear law resolves one contradiction between imposed variables.  A law is turned
+    once at most, so the loop ends.
 
     Raises
     ------
@@ -40,9 +40,9 @@ def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
         contradiction = laws.contradiction()
         if contradiction is None:
             return laws
-        found = _to_turn(laws, contradiction, turned)
+        found = _turned_resistor(laws, contradiction, turned)
         if found is None:
-            followers |= dependent(laws, contradiction)
+            followers |= dependent_states(laws, contradiction)
             continue
         placed, port = found
         turned.add(placed.element)
@@ -56,13 +56,12 @@ def causal(circuit: Circuit, symbols: SymbolTable) -> Laws:
         circuit = circuit.replaced(placed, port)
 
 
-def _to_turn(
+def _turned_resistor(
     laws: Laws, singular: SingularError, turned: set[str]
 ) -> tuple[Placed, DissipativePort] | None:
-    """Return a resistor in a contradiction, turned round; one not yet turned, with a linear law."""
+    """Return the first resistor in a contradiction that can still be turned, turned round."""
     for relation in singular.relations:
-        for label in relation:
-            kind, number = label[1] if label[0] == "sum" else label
+        for kind, number in map(term_of, relation):
             if kind == "W":
                 placed, port = laws.processes[number]
                 taken = laws.circuit.names
@@ -72,11 +71,11 @@ def _to_turn(
     return None
 
 
-def dependent(laws: Laws, singular: SingularError) -> set[str]:
-    """Return the states of stores whose co-states are decided by others, before them in the spec.
+def dependent_states(laws: Laws, singular: SingularError) -> set[str]:
+    """Return the states of the stores that follow others, as their co-states depend on them.
 
-    These are given their co-state and give their rate. Kept are, in the order of the spec, those
-    whose co-state is no combination of those kept before.
+    In the order of the spec, a store follows if its co-state is a combination of earlier ones; it
+    then imposes its rate.
 
     Raises
     ------
@@ -85,18 +84,18 @@ def dependent(laws: Laws, singular: SingularError) -> set[str]:
     """
     if not singular.relations:
         raise refusal(laws, singular)
-    found = set()
-    for label, row in _reduced(singular.relations).items():
+    followers = set()
+    for label, row in _row_reduced(singular.relations).items():
         why = _hindrance(laws, row)
         if label[0] != "E" or len(row) == 1 or why:
-            said = [relation for relation in singular.relations if relation.keys() == row.keys()]
-            raise refusal(laws, SingularError([*said, row, *singular.relations], []), why)
-        found.add(laws.states[label[1]][1].state)
-    return found
+            first = [relation for relation in singular.relations if relation.keys() == row.keys()]
+            raise refusal(laws, SingularError([*first, row, *singular.relations], []), why)
+        followers.add(laws.states[label[1]][1].state)
+    return followers
 
 
-def _reduced(relations: list[Form]) -> dict[Any, Form]:
-    """Return relations solved for the last store in each, or for what is no store's co-state."""
+def _row_reduced(relations: list[Form]) -> dict[Any, Form]:
+    """Return relations solved for the last store in each, or for a given that is no co-state."""
     labels = dict.fromkeys(label for relation in relations for label in relation)
     stores = sorted(label for label in labels if label[0] == "E")
     order = [*stores, *(label for label in labels if label[0] != "E")]
@@ -115,9 +114,8 @@ def _reduced(relations: list[Form]) -> dict[Any, Form]:
 
 
 def _hindrance(laws: Laws, row: Form) -> str:
-    """Return why stores whose co-states depend on each other cannot be joined, else nothing."""
-    labels = [label[1] if label[0] == "sum" else label for label in row]
-    stores = [laws.states[n] for kind, n in labels if kind == "E"]
+    """Return why stores whose co-states depend on each other cannot be joined, or ''."""
+    stores = [laws.states[n] for kind, n in map(term_of, row) if kind == "E"]
     if len(stores) < len(row):
         return ""
     known = laws.circuit.model.parameters.keys()

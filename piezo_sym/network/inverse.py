@@ -1,7 +1,7 @@
-"""A resistor's law turned round: from what it gives to what it is given.
+"""A resistor's law turned round, into the other causality.
 
-Input: a `DissipativePort`, whose law is a function of one letter.  Output: the same resistor in its
-other causality, ``voltage = "R*i"`` as ``current = "v/R"``, if its law is linear in the letter.
+Input: a `DissipativePort`, whose law is a function of one letter.  Output: the same resistor with
+``current = "v/R"`` for ``voltage = "R*i"``, if its law is linear in the letter.
 """
 
 from collections.abc import Collection
@@ -20,7 +20,7 @@ from piezo_sym.spec.names import fresh
 def turn(port: DissipativePort, taken: Collection[str]) -> DissipativePort | None:
     """Return the resistor in its other causality if its law is linear in its letter, else None.
 
-    `taken` are the names in use, none of which its new letter is.
+    `taken` are the names in use, which its new letter avoids.
     """
     slope = slope_of(port.law, port.letter)
     if port.rate or slope is None or vanishes(slope):
@@ -46,7 +46,7 @@ def slope_of(law: Expr, letter: str) -> Expr | None:
 def constant_slope(law: Expr, letter: str) -> Expr | None:
     """Return the slope of a law that is affine in a letter, else None."""
     if any(letter in names(node) for node in walk(law) if isinstance(node, Call | Cmp)):
-        return None  # a function or a branch of the letter: its slope would not show a jump
+        return None  # in a function or a condition: the slope would not show a jump
     slope = derivative(law, letter)
     return None if letter in names(slope) else slope
 
@@ -65,6 +65,6 @@ def _over(top: Expr, slope: Expr) -> Expr:
 
 
 def vanishes(law: Expr) -> bool:
-    """Return whether a law is seen to be zero, without multiplying it out."""
+    """Return whether a law is zero by its form, without expanding it."""
     table = {name: sp.Symbol(name, real=True) for name in names(law)}
     return bool(to_sympy(law, table) == 0)

@@ -1,7 +1,7 @@
-"""What stores that depend on each other are joined into: few states, with the energy of all.
+"""Stores with dependent co-states, joined into few states that have the energy of all.
 
-Input: solved junction laws, in which the stores that others decide give their rates.  Output: the
-circuit without them, and a `Joint` for each group.  With the co-states e = Z e_r that the junctions
+Input: solved junction laws with followers, which impose their rates.  Output: the circuit without
+followers, and a `Joint` for each group of stores.  With the co-states e = Z e_r that the junctions
 allow, rests x_0 and e = Q (x - x_0),
 
     x_r = Z^T x     e_r = A^-1 y     U_r = y^T A^-1 y/2     y = x_r - Z^T x_0     A = Z^T Q^-1 Z.
@@ -18,18 +18,7 @@ from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.errors import NetworkError, SpecError, listing, quote
 from piezo_sym.expressions.calculus import add, div, inserted, mul, neg, power
 from piezo_sym.expressions.exact_eval import evaluate
-from piezo_sym.expressions.tree import (
-    ONE,
-    ZERO,
-    Add,
-    Div,
-    Expr,
-    Mul,
-    Neg,
-    Num,
-    Sym,
-    names,
-)
+from piezo_sym.expressions.tree import ONE, ZERO, Add, Div, Expr, Mul, Neg, Num, Sym, names
 from piezo_sym.network.inverse import constant_slope
 from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.spec.circuit import Circuit, Placed
@@ -37,9 +26,9 @@ from piezo_sym.spec.elements.ports import Coupling, Storage
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import conditions, laws, starts
 
-#: Co-states of initial values agree to this, relative to their terms.
+#: Tolerance on co-states of initial values, relative to their terms.
 CLOSE = 1e-9
-#: The inverse of a larger matrix would have thousands of terms.
+#: States of one joint; the inverse of a larger matrix would have thousands of terms.
 MOST_KEPT = 3
 TWO = Num(Fraction(2))
 
@@ -52,7 +41,7 @@ class Member:
     Attributes
     ----------
     element, store : as the spec declares it.
-    shares : its row of Z: its co-state is that sum of the co-states of those kept.
+    shares : its row of Z, by which its co-state is a sum of those of the kept stores.
     compliance, rest : 1/Q and x_0: its co-state is (x - x_0)/compliance.
     """
 
@@ -71,34 +60,34 @@ class Member:
 @final
 @dataclass(frozen=True)
 class Joint:
-    """Stores that are joined: those kept, whose symbols the states have, then the others."""
+    """Joined stores: those kept, whose states remain, and their followers."""
 
     kept: tuple[Member, ...]
     followers: tuple[Member, ...]
 
     @property
     def members(self) -> tuple[Member, ...]:
-        """All that are joined."""
+        """The kept stores, then the followers."""
         return (*self.kept, *self.followers)
 
     def costate(self, member: Member) -> Expr:
-        """Return the co-state of a member in those of the stores kept."""
+        """Return the co-state of a member in terms of those of the kept stores."""
         costates = (Sym(other.store.costate) for other in self.kept)
         return add(*map(mul, member.shares, costates))
 
     def start(self, model: Model, state: str) -> Expr:
-        """Return the initial value Z^T x of a state that is kept."""
+        """Return the initial value Z^T x of a kept state."""
         n = next(n for n, member in enumerate(self.kept) if member.store.state == state)
         return add(*(mul(m.shares[n], *starts(model, m.store.state)) for m in self.members))
 
 
-def joined(laws: Laws) -> tuple[Circuit, tuple[Joint, ...]]:
-    """Return the circuit without the stores that others decide, and what they were joined into.
+def join_stores(laws: Laws) -> tuple[Circuit, tuple[Joint, ...]]:
+    """Return the circuit without followers, and the joints that they are in.
 
     Raises
     ------
     SpecError
-        If initial values disagree, or something depends on the state of a store that is not kept.
+        If initial values disagree, or a law or condition depends on the state of a follower.
     NetworkError
         If too many states are joined with each other.
     """
@@ -115,16 +104,16 @@ def joined(laws: Laws) -> tuple[Circuit, tuple[Joint, ...]]:
         joint = _joint(circuit, stores, shares)
         _check_uses(circuit.model, joint)
         _check_starts(circuit.model, joint)
-        for (placed, _), port in zip(stores, _states(circuit, joint, shares), strict=False):
+        for (placed, _), port in zip(stores, _kept_stores(circuit, joint, shares), strict=False):
             circuit = circuit.replaced(placed, port)
         joints.append(joint)
-    gone = [placed for placed, _ in laws.followers]
-    left = tuple(placed for placed in circuit.ports if placed not in gone)
-    return replace(circuit, ports=left), tuple(joints)
+    removed = [placed for placed, _ in laws.followers]
+    ports = tuple(placed for placed in circuit.ports if placed not in removed)
+    return replace(circuit, ports=ports), tuple(joints)
 
 
 def _groups(Z: list[dict[int, sp.Expr]]) -> list[tuple[list[int], list[int]]]:
-    """Return (kept, followers) of each group of stores that have to do with each other."""
+    """Return (kept, followers) of each group of stores whose rows of Z overlap."""
     groups: list[tuple[list[int], list[int]]] = []
     for m, row in enumerate(Z):
         near = [group for group in groups if not row.keys().isdisjoint(group[0])]
@@ -135,7 +124,7 @@ def _groups(Z: list[dict[int, sp.Expr]]) -> list[tuple[list[int], list[int]]]:
 
 
 def _joint(circuit: Circuit, stores: list[tuple[Placed, Storage]], shares: sp.Matrix) -> Joint:
-    """Return stores with their rows of Z, those kept first."""
+    """Return the joint of stores with their rows of Z, the kept ones first."""
     ratios = _ratios(circuit)
     members = [
         Member(
@@ -165,13 +154,13 @@ def _ratios(circuit: Circuit) -> dict[str, Expr]:
 
 
 def _compliance(store: Storage) -> Expr:
-    """Return 1/Q of a store whose energy is quadratic."""
+    """Return 1/Q of a store with a quadratic energy."""
     slope = constant_slope(store.law, store.state) or ONE
     return slope.right if isinstance(slope, Div) and slope.left == ONE else div(ONE, slope)
 
 
 def _rest(store: Storage) -> Expr:
-    """Return the state at which the co-state of a store is zero."""
+    """Return the state at which a store's co-state is zero."""
     match store.law:
         case Div(Sym(), _) | Mul(_, Sym()):
             return ZERO
@@ -180,24 +169,28 @@ def _rest(store: Storage) -> Expr:
     return neg(mul(_compliance(store), inserted(store.law, {store.state: ZERO})))
 
 
-def _states(circuit: Circuit, joint: Joint, Z: sp.Matrix) -> Iterator[Storage]:
-    """Yield the stores that are kept, with the energy of all: e_r = A^-1 y."""
-    sizes = [sp.Dummy() for _ in joint.members]
-    words = [member.compliance for member in joint.members]
+def _kept_stores(circuit: Circuit, joint: Joint, Z: sp.Matrix) -> Iterator[Storage]:
+    """Yield the kept stores with the energy of all: e_r = A^-1 y."""
+    sizes = [sp.Dummy() for _ in joint.members]  # their compliances
     A, ratios = Z.T * sp.diag(*sizes) * Z, _ratios(circuit)
 
-    def spelled(expr: sp.Expr) -> Expr:
+    def tree(expr: sp.Expr) -> Expr:
         """Return a polynomial in compliances, its terms in the order of their stores."""
-        terms = sp.Poly(expr, *sizes).terms()
-        return add(*(_term(inserted(coefficient(c), ratios), powers, words) for powers, c in terms))
+        terms = []
+        for powers, factor in sp.Poly(expr, *sizes).terms():
+            term = inserted(coefficient(factor), ratios)
+            for member, exponent in zip(joint.members, powers, strict=True):
+                term = mul(term, power(member.compliance, Fraction(exponent))) if exponent else term
+            terms.append(term)
+        return add(*terms)
 
-    divisor, adjugate = spelled(A.det()), A.adjugate().applyfunc(sp.expand)
+    divisor, adjugate = tree(A.det()), A.adjugate().applyfunc(sp.expand)
     y = []  # x_r - Z^T x_0
     for n, member in enumerate(joint.kept):
         rest = add(*(mul(other.shares[n], other.rest) for other in joint.members))
         y.append(add(Sym(member.store.state), neg(rest)))
     tops = [
-        add(*(mul(spelled(entry), y[m]) for m, entry in enumerate(adjugate.row(n))))
+        add(*(mul(tree(entry), y[m]) for m, entry in enumerate(adjugate.row(n))))
         for n in range(Z.cols)
     ]
     energy = div(add(*map(mul, y, tops)), mul(TWO, divisor)) if Z.cols > 1 else None
@@ -207,18 +200,8 @@ def _states(circuit: Circuit, joint: Joint, Z: sp.Matrix) -> Iterator[Storage]:
         yield replace(member.store, law=div(top, divisor), energy=energy, doc=doc)
 
 
-def _term(value: Expr, powers: tuple[int, ...], words: list[Expr]) -> Expr:
-    """Return a coefficient times powers of compliances."""
-    for word, exponent in zip(words, powers, strict=True):
-        value = mul(value, power(word, Fraction(exponent))) if exponent else value
-    return value
-
-
-# What is said of their states
-
-
 def _check_uses(model: Model, joint: Joint) -> None:
-    """Refuse laws and conditions that use the state of a store that is not kept."""
+    """Refuse laws and conditions that use the state of a follower."""
     used = [(c.where, {*names(c.tree)}) for c in conditions(model)]
     used += [(law.where, {*names(law.tree)}.difference(law.letters)) for law in laws(model)]
     for store in (member.store for member in joint.followers):
@@ -230,29 +213,30 @@ def _check_uses(model: Model, joint: Joint) -> None:
 
 
 def _check_starts(model: Model, joint: Joint) -> None:
-    """Refuse initial values, if any are said, with co-states that joined stores cannot have."""
+    """Refuse given initial values with co-states that joined stores cannot have together."""
     if model.initial.keys().isdisjoint(member.store.state for member in joint.members):
         return
     values = {n: p.si for n, p in model.parameters.items() if isinstance(p.si, float)}
     values |= {name: entry.si for name, entry in model.inputs.items()}
-    costates = [_start(model, member, values) for member in joint.kept]
+    costates = [_initial_costate(model, member, values) for member in joint.kept]
     for member in joint.followers:
-        found, store = _start(model, member, values), member.store
+        costate, store = _initial_costate(model, member, values), member.store
         terms = [evaluate(z, values) * e for z, e in zip(member.shares, costates, strict=True)]
-        if abs(found - sum(terms)) > CLOSE * max(abs(found), *map(abs, terms)):
+        if abs(costate - sum(terms)) > CLOSE * max(abs(costate), *map(abs, terms)):
             given = listing(
                 f"{other.store.costate} = {e:g} {other.store.units[1]}"
                 for other, e in zip(joint.kept, costates, strict=True)
             )
             there = sum(terms) * evaluate(member.compliance, values) + evaluate(member.rest, values)
-            what = f"{quote(member.element)} is joined, and starts with {store.costate} = {found:g}"
+            start = f"{store.costate} = {costate:g}"
+            what = f"{quote(member.element)} is joined, and starts with {start}"
             expected = f"{sum(terms):g} {store.units[1]}, as {given}"
             remedy = f"give {store.state} = {there / model.joined.get(store.state, 1):.12g}"
             raise SpecError(what, f"initial.{store.state}", expected, remedy)
 
 
-def _start(model: Model, member: Member, values: Mapping[str, float]) -> float:
-    """Return the co-state of a store at the initial value that is said of it."""
+def _initial_costate(model: Model, member: Member, values: Mapping[str, float]) -> float:
+    """Return the co-state of a store at its given initial value."""
     (start,) = starts(model, member.store.state)
     try:
         beyond = evaluate(start, values) - evaluate(member.rest, values)

@@ -4,10 +4,9 @@ Input: a `Circuit`.  Output: a `Junction`,
 
     xdot = J0 E - B W + g u        z = B^T E + D^T u        y = g^T E + D W + N u
 
-with the storage co-states E, the law outputs W and the inputs u as given (the transducer ratios
-are opaque symbols).  The junction laws are solved by `kirchhoff`; here their answers become
-matrices, and it is checked that the structure preserves power.  Linear resistors that determine
-each other's flow are solved by `loops`.
+with the storage co-states E, the law outputs W and the inputs u as givens; transducer ratios are
+opaque symbols.  `kirchhoff` solves the junction laws; here their answers become matrices, which are
+checked to preserve power.  `loops` solves linear resistors that determine each other's flow.
 """
 
 from collections.abc import Callable, Mapping
@@ -21,9 +20,9 @@ from piezo_sym.algebra.linear import Form
 from piezo_sym.algebra.sums import Lanes
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
-from piezo_sym.network.causality import causal
-from piezo_sym.network.joints import Joint, joined
-from piezo_sym.network.kirchhoff import Answer, Laws
+from piezo_sym.network.causality import causal_laws
+from piezo_sym.network.joints import Joint, join_stores
+from piezo_sym.network.kirchhoff import Answer, Laws, term_of
 from piezo_sym.network.loops import Definition, Slope, loops_of
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
@@ -34,18 +33,18 @@ from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, HeatInput, 
 @final
 @dataclass(frozen=True)
 class Junction:
-    """The linear structure of a network; see the module's head for the equations.
+    """The linear structure of a network; the module's docstring has the equations.
 
     Attributes
     ----------
     circuit : the circuit, in the causality that the junction laws allow.
     states, processes, ports : slots; ports are ordered by their input, then by declaration.
     J0, B, D, g, N : matrices over them, their entries rational in the ratios, slopes and shares.
-    slopes, shares : the symbols that resistive loops bring, see `Loops`.
-    joints : what was joined into the states of others.
-    couplings : across_1 (of a transformer: through_1) and across_2 of each, over the co-states E,
-        the law outputs W, the inputs u, and the rates "R" of those that were joined.
-    divisors : what the solution divides by; the structure exists where none is zero.
+    slopes, shares : the symbols of resistive loops, see `Loops`.
+    joints : the groups of stores that were joined into the states of some.
+    couplings : across_1 (of a transformer: through_1) and across_2 of each coupling, over the
+        co-states E, the law outputs W, the inputs u, and the rates "R" of followers.
+    divisors : the divisors of the solution; the structure exists where none is zero.
     """
 
     circuit: Circuit
@@ -73,7 +72,7 @@ def junction_of(circuit: Circuit, symbols: SymbolTable) -> Junction:
         If the junction laws have no, or more than one, solution; names the elements at fault.
     """
     check_nodes(circuit)
-    laws = causal(circuit, symbols)
+    laws = causal_laws(circuit, symbols)
     blocks = _Blocks(laws, Lanes(symbols.banks, symbols.counts))
     return blocks.junction()
 
@@ -82,8 +81,8 @@ def junction_of(circuit: Circuit, symbols: SymbolTable) -> Junction:
 class _Blocks:
     """The answers of the junction laws, sorted into matrices.
 
-    A row is a branch's answer, a column what it is given: kinds "E" (states), "W" (processes), "u"
-    (ports) and "R" (rates of followers, which states no longer see when they are joined).
+    A row is a branch's answer, a column a given.  Kinds of both: "E" (states), "W" (processes), "u"
+    (ports), "R" (rates of followers, which disappear as they are joined).  Rows "C" are couplings.
     """
 
     def __init__(self, laws: Laws, lanes: Lanes) -> None:
@@ -102,7 +101,7 @@ class _Blocks:
     def junction(self) -> Junction:
         """Return the junction, having checked that it preserves power."""
         J0, N = self._block("E", "E"), self._output("u")
-        B, g, D = self._block("E", "W", _minus), self._block("E", "u"), self._output("W")
+        B, g, D = -self._block("E", "W"), self._block("E", "u"), self._output("W")
         M = self._block("W", "W")
         self._check_power(
             B - self._block("W", "E").T,
@@ -113,7 +112,7 @@ class _Blocks:
             *(self._block("R", kind) for kind in "WuR"),
             *(self._block(kind, "R") for kind in "Wu"),
         )
-        circuit, joints = joined(self.laws)
+        circuit, joints = join_stores(self.laws)
         loops = loops_of(self.laws, M)
         B, D = loops.columns(B), loops.columns(D)
         used = {
@@ -143,7 +142,7 @@ class _Blocks:
             raise NetworkError(what, "network", remedy="report this spec: it shows a fault here")
 
     def _block(self, row: str, col: str, sign: Callable[[int], int] = lambda _: 1) -> LaneMatrix:
-        """Return the matrix of one kind of answers over one kind of givens."""
+        """Return the matrix of one kind of answers over one kind of givens, rows with a sign."""
         parts: tuple[dict[tuple[int, int], sp.Expr], dict[tuple[int, int], sp.Expr]] = ({}, {})
         for (kind, r), answer in self.answers.items():
             if kind == row:
@@ -161,12 +160,8 @@ class _Blocks:
         return -1 if isinstance(port, Source) and port.imposes is PowerVariable.ACROSS else 1
 
     def _entries(self, row: int, col: str, form: Form, sign: int) -> dict[tuple[int, int], sp.Expr]:
-        found = {}
-        for label, coefficient in form.items():
-            kind, number = label[1] if label[0] == "sum" else label
-            if kind == col:
-                found[row, number] = sign * self.laws.expression(coefficient)
-        return found
+        terms = [(*term_of(label), coefficient) for label, coefficient in form.items()]
+        return {(row, n): sign * self.laws.expression(c) for kind, n, c in terms if kind == col}
 
     def _with_conduction(self, B: LaneMatrix) -> LaneMatrix:
         """Return B with the conductions: each takes entropy from its first body."""
@@ -178,15 +173,10 @@ class _Blocks:
         return replace(B, full={**B.full, **taken})
 
     def _with_heat(self, g: LaneMatrix) -> LaneMatrix:
-        """Return the input map with the heat exchanges, each into its body's entropy."""
+        """Return the input map with the heat inputs, each into its body's entropy."""
         heat = {
             (self.rows[placed.port.body], n): sp.S.One
             for n, placed in enumerate(self.laws.ports)
             if isinstance(placed.port, Exchange | HeatInput)
         }
         return replace(g, full={**g.full, **heat})
-
-
-def _minus(row: int) -> int:
-    del row
-    return -1

@@ -1,9 +1,9 @@
 """Kirchhoff's and Newton's laws as exact equations, solved for banks of any size.
 
 Input: a `Circuit`.  Output: for each branch, the variable it does not impose, as a combination of
-co-states E, law outputs W and inputs u.  No element's matrices are known here: each branch imposes
-its across or through variable, and the laws say the rest.  A bank is one representative lane, whose
-own unknowns are eliminated first.
+co-states E, law outputs W and inputs u.  All that is used of an element is which variable, across
+or through, each of its branches imposes.  A bank is one representative lane, whose own unknowns are
+eliminated first.
 """
 
 from collections.abc import Iterator, Mapping
@@ -40,7 +40,7 @@ from piezo_sym.spec.elements.ports import (
     Storage,
 )
 
-#: Coefficients to combine in a solution times the ratios in each: about half a minute.
+#: Coefficients combined in a solution, times the number of ratios: about half a minute.
 MOST_WORK = 20_000_000
 
 #: An answer: the part that is the same for every lane, and that of the branch's own lane.
@@ -50,10 +50,10 @@ Answer = tuple[Form, Form]
 @final
 @dataclass(frozen=True)
 class Edge:
-    """A branch as the junction laws see it: its through variable as a combination.
+    """A branch in the junction laws.
 
-    `key` is the given it imposes (``("E", 2)``; "R": the rate of a follower), and the name of the
-    unknown it answers with.
+    `key` is the given that it imposes, such as ``("E", 2)`` ("R": the rate of a follower); it names
+    the unknown of the branch, too.
     """
 
     placed: Placed
@@ -68,8 +68,14 @@ class Edge:
         return ("t", self.key)
 
 
+def term_of(label: Any) -> tuple[str, Any]:
+    """Return the (kind, index) of a given, or of the given that a sum over lanes has."""
+    kind, index = label[1] if label[0] == "sum" else label
+    return kind, index
+
+
 def port_order(circuit: Circuit) -> tuple[Placed, ...]:
-    """Return the ports that an input drives: by the input's place in the spec, then declaration."""
+    """Return the ports driven by inputs, in the order of the inputs, then of declaration."""
     inputs = list(circuit.model.inputs)
     driven = [p for p in circuit.ports if isinstance(p.port, Source | Exchange | HeatInput)]
     return tuple(sorted(driven, key=lambda placed: inputs.index(placed.port.input)))  # type: ignore[union-attr]
@@ -79,7 +85,7 @@ def port_order(circuit: Circuit) -> tuple[Placed, ...]:
 class Laws:
     """The junction laws of one circuit, and their solution.
 
-    `followers` are the states of stores that are given their co-state, and give their rate.
+    `followers` are the states of the stores that impose their rate, not their co-state.
     """
 
     def __init__(
@@ -88,15 +94,10 @@ class Laws:
         self.circuit, self.symbols = circuit, symbols
         self.banks = tuple(symbols.counts)
         couplings = [port for _, port in circuit.of(Coupling)]
-        letters = [_letter(n) for n in range(len(couplings))]
-        self.field = QQ.frac_field(*letters) if letters else QQ
-        self.ratio = {
-            port: self.field.from_sympy(letter)
-            for port, letter in zip(couplings, letters, strict=True)
-        }
-        self._names = {
-            letter: symbols[port.name] for port, letter in zip(couplings, letters, strict=True)
-        }
+        letters = {port: _letter(n) for n, port in enumerate(couplings)}
+        self.field = QQ.frac_field(*letters.values()) if letters else QQ
+        self.ratio = {port: self.field.from_sympy(letter) for port, letter in letters.items()}
+        self._names = {letter: symbols[port.name] for port, letter in letters.items()}
         self.states = tuple(s for s in circuit.of(Storage, Body) if s[1].state not in followers)
         self.followers = tuple(s for s in circuit.of(Storage) if s[1].state in followers)
         self.processes = tuple(circuit.of(DissipativePort, Conductor))
@@ -123,9 +124,10 @@ class Laws:
 
     @cached_property
     def answers(self) -> dict[tuple[str, int], Answer]:
-        """Return each branch's answer, by the given that it imposes; and two for coupling n.
+        """The answer of each branch, by the given that it imposes, and two of each coupling n.
 
-        These are ("C", 2*n), its across_1 (of a transformer: through_1), and its across_2.
+        These are ("C", 2*n), its across_1 (of a transformer: through_1), and ("C", 2*n + 1), its
+        across_2.
 
         Raises
         ------
@@ -156,23 +158,20 @@ class Laws:
             return singular
         return None
 
-    def _through(self, edge: Edge) -> Equation:
-        """Return a branch's through variable as (unknowns, givens)."""
-        if edge.imposes is PowerVariable.ACROSS:
-            return Equation({edge.unknown: self.field.one}, {})
-        return Equation({}, {edge.key: edge.sign * self.field.one})
-
     def _balances(self, bank: str | None) -> dict[str, Equation]:
-        """Return what the branches of one bank, or of no bank, draw from each node."""
+        """Return the sum of through variables at each node, of a bank's or the other branches."""
         rows: dict[str, Equation] = {}
         for edge in self.edges:
             if edge.placed.bank == bank:
-                _draw(rows, edge.branch, self._through(edge), self.field.one)
+                through = Equation({edge.unknown: self.field.one})
+                if edge.imposes is PowerVariable.THROUGH:
+                    through = Equation({}, {edge.key: edge.sign * self.field.one})
+                _book(rows, edge.branch, through, self.field.one)
         if bank is None:
             for port, ratio in self.ratio.items():
                 first, second = self._coupled(port, ratio)
-                _draw(rows, port.first, Equation(first, {}), self.field.one)
-                _draw(rows, port.second, Equation(second, {}), self.field.one)
+                _book(rows, port.first, Equation(first, {}), self.field.one)
+                _book(rows, port.second, Equation(second, {}), self.field.one)
         return rows
 
     def _coupled(self, port: Coupling, ratio: Any) -> tuple[Form, Form]:
@@ -193,7 +192,7 @@ class Laws:
                 yield Equation(across, {})
 
     def _flows(self, bank: str | None) -> list[tuple[str, Any]]:
-        """Return what flows through the branches of a bank, or of none, where it is unknown."""
+        """Return the unknown through variables of a bank's, or of the other, branches."""
         own = (e for e in self.edges if e.placed.bank == bank)
         return [e.unknown for e in own if e.imposes is PowerVariable.ACROSS]
 
@@ -206,10 +205,10 @@ class Laws:
         equations = [Equation(row.left, _negated(row.right)) for row in inner.values()]
         equations += list(self._constraints(bank))
         unknowns = [("e", node) for node in inner] + self._flows(bank)
-        for equation in equations:  # shared nodes are given, for a lane
+        for equation in equations:  # to a lane, shared nodes are givens
             for label in [label for label in equation.left if label not in unknowns]:
                 accumulate(equation.right, label, -equation.left.pop(label))
-        return self._solved(equations, unknowns)
+        return self._solve(equations, unknowns)
 
     def _solve_shared(self, lanes: dict[str, dict[Any, Form]]) -> dict[Any, Form]:
         """Return the shared unknowns in terms of shared givens and of sums over lanes."""
@@ -221,7 +220,7 @@ class Laws:
                     combine(total.right, self._summed(bank, row, solution), self.field.one)
         chained = []
         for bank, ends in self.circuit.chains.items():
-            _draw(balances, ends, Equation({("s", bank): self.field.one}), self.field.one)
+            _book(balances, ends, Equation({("s", bank): self.field.one}), self.field.one)
             one = Equation({("e", lane_ends(bank)[0]): self.field.one})
             fall = self._summed(bank, one, lanes[bank])
             chained.append(Equation(_across(ends, self.field.one), fall))
@@ -230,9 +229,9 @@ class Laws:
         unknowns = [("e", node) for node in balances] + self._flows(None)
         unknowns += [("s", bank) for bank in self.circuit.chains]
         unknowns += [("t", port.name) for port in self.ratio if not port.gyrates]
-        return self._solved(equations, unknowns)
+        return self._solve(equations, unknowns)
 
-    def _solved(self, equations: list[Equation], unknowns: list[Any]) -> dict[Any, Form]:
+    def _solve(self, equations: list[Equation], unknowns: list[Any]) -> dict[Any, Form]:
         """Return the solution of some of the laws; refuse those that take too long."""
         try:
             return solve(equations, unknowns, self.divisors, MOST_WORK // (len(self.ratio) + 3))
@@ -243,7 +242,7 @@ class Laws:
             raise NetworkError(what, "network", remedy=remedy) from error
 
     def _summed(self, bank: str, row: Equation, solution: dict[Any, Form]) -> Form:
-        """Return what all lanes together draw from a node, or are across, in sums of givens."""
+        """Return the sum of a lane's combination over all lanes, in sums of givens."""
         drawn = dict(row.right)
         for label, coefficient in row.left.items():
             combine(drawn, solution.get(label, {label: self.field.one}), coefficient)
@@ -254,25 +253,25 @@ class Laws:
         return {("sum", label): coefficient for label, coefficient in drawn.items()}
 
     def _answer(self, edge: Edge, lanes: Mapping[str, Any], shared: dict[Any, Form]) -> Answer:
-        """Return a branch's answer, the variable it does not impose: (every lane, own lane)."""
+        """Return a branch's answer, the variable that it does not impose."""
         across = edge.imposes is PowerVariable.THROUGH
         asked = _across(edge.branch, self.field.one) if across else {edge.unknown: self.field.one}
         return self._solution(asked, lanes.get(edge.placed.bank or "", {}), shared)
 
     def _solution(self, asked: Form, own: dict[Any, Form], shared: dict[Any, Form]) -> Answer:
-        """Return a combination of unknowns in what is given: (every lane, own lane)."""
-        mine: Form = {}
+        """Return a combination of unknowns in terms of givens, as (every lane, own lane)."""
+        lane: Form = {}
         for label, coefficient in asked.items():
-            combine(mine, own.get(label, {label: self.field.one}), coefficient)
+            combine(lane, own.get(label, {label: self.field.one}), coefficient)
         full: Form = {}
-        for label in [label for label in mine if label in shared]:
-            combine(full, shared[label], mine.pop(label))
-        return full, mine
+        for label in [label for label in lane if label in shared]:
+            combine(full, shared[label], lane.pop(label))
+        return full, lane
 
 
 @cache
 def _letter(n: int) -> sp.Symbol:
-    """Return the symbol that stands for ratio n; the same object each time compares faster."""
+    """Return the symbol of ratio n; cached, as the same object compares faster."""
     return sp.Symbol(f"ratio_{n}")
 
 
@@ -285,8 +284,8 @@ def _across(branch: Branch, factor: Any) -> Form:
     return form
 
 
-def _draw(rows: dict[str, Equation], branch: Branch, through: Equation, one: Any) -> None:
-    """Book a through variable at both ends of its branch: out of the first, into the second."""
+def _book(rows: dict[str, Equation], branch: Branch, through: Equation, one: Any) -> None:
+    """Add a through variable to the balances of its branch: out of node one, into node two."""
     for node, sign in zip(branch, (one, -one), strict=True):
         if not is_reference(node):
             row = rows.setdefault(node, Equation())

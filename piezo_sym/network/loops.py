@@ -24,13 +24,13 @@ from piezo_sym.errors import NetworkError, listing, quote, with_article
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.kirchhoff import Laws
-from piezo_sym.network.nodes import reached
+from piezo_sym.network.nodes import reachable
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.ports import DissipativePort
 from piezo_sym.spec.names import fresh
 
-#: More than these would write out solutions of thousands of terms.
+#: Resistors in one loop; the solution of more would have thousands of terms.
 MOST = 8
 
 Definition = tuple[sp.Symbol, sp.Expr]
@@ -39,7 +39,7 @@ Definition = tuple[sp.Symbol, sp.Expr]
 @final
 @dataclass(frozen=True)
 class Slope:
-    """The slope of the law of a process in a loop: its symbol, and the law in T."""
+    """The slope of a law in a loop: its symbol, its process, and its law in temperatures."""
 
     symbol: sp.Symbol
     process: int
@@ -56,8 +56,8 @@ class Loops:
     H : shares of the driving forces, processes by processes; the identity without loops.
     skew : the matrix G M G, processes by processes.
     slopes : of each process in a loop.
-    shares : the symbol of each entry of H that has one, and what it is in slopes and ratios.
-    divisors : what H divides by.
+    shares : the symbol of each entry of H that is no number, and its value in slopes and ratios.
+    divisors : the determinants that H divides by.
     """
 
     H: LaneMatrix
@@ -76,7 +76,7 @@ class Loops:
 
 
 def loops_of(laws: Laws, M: LaneMatrix) -> Loops:
-    """Return the solved loops of a network, M being how driving forces depend on law outputs.
+    """Return the solved loops of a network in which z = K^T c + M W.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def loops_of(laws: Laws, M: LaneMatrix) -> Loops:
     divisors: list[sp.Expr] = []
     H = {(k, k): sp.S.One for k, slot in enumerate(M.rows) if slot.bank is None}
     for group in groups:
-        inverse, divisor = _solved(M, group, slopes)
+        inverse, divisor = _loop_inverse(M, group, slopes)
         divisors.append(divisor)
         for (row, col), value in inverse.items():
             base = f"share_{M.rows[row].label}_{M.rows[col].label}"
@@ -122,13 +122,13 @@ def _groups(M: LaneMatrix) -> Iterator[tuple[int, ...]]:
         near.setdefault(col, set()).add(row)
     left = sorted(near)
     while left:
-        group = reached(left[:1], near)
+        group = reachable(left[:1], near)
         yield tuple(sorted(group))
         left = [k for k in left if k not in group]
 
 
 def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slope]:
-    """Yield the slopes of a loop; refuse a law that is not linear, or too many of them."""
+    """Yield the slopes of a loop; refuse nonlinear laws, and too many laws."""
     members = [laws.processes[k] for k in group]
     names = listing(quote(placed.element) for placed, _ in members)
     what = f"{names} determine each other's flow"
@@ -149,7 +149,7 @@ def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slo
         yield Slope(_symbol(f"slope_{placed.element}", taken), k, law)
 
 
-def _solved(
+def _loop_inverse(
     M: LaneMatrix, group: tuple[int, ...], slopes: dict[int, sp.Symbol]
 ) -> tuple[dict[tuple[int, int], sp.Expr], sp.Expr]:
     """Return the entries of (I - M G)^-1 of one group, and its determinant."""

@@ -9,20 +9,13 @@ from typing import TypeVar
 from piezo_sym.errors import NetworkError, listing, nearest, quote, with_article
 from piezo_sym.spec.circuit import LAST, Circuit, lane_ends
 from piezo_sym.spec.elements.domains import REFERENCES, PhysicalDomain
-from piezo_sym.spec.elements.ports import (
-    Body,
-    Branch,
-    Coupling,
-    DissipativePort,
-    Source,
-    Storage,
-)
+from piezo_sym.spec.elements.ports import Body, Branch, Coupling, DissipativePort, Source, Storage
 
 K = TypeVar("K", bound=Hashable)
 
 
 def is_reference(node: str) -> bool:
-    """Return whether a node is one at which the across variable is zero, perhaps of a lane."""
+    """Return whether the across variable is zero at a node, by its domain or in a lane's chain."""
     return node in REFERENCES or node.endswith(LAST)
 
 
@@ -40,10 +33,12 @@ def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
 
 
 def _chained(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
-    """Yield what joins the first and last lane of a chain to its ends, as `branches`."""
-    found = {placed.bank: (placed.element, placed.port) for placed in circuit.ports if placed.bank}
+    """Yield, as `branches` does, the links between the ends of each chain and its lanes."""
+    members = {
+        placed.bank: (placed.element, placed.port) for placed in circuit.ports if placed.bank
+    }
     for bank, (first, last) in circuit.chains.items():
-        element, port = found[bank]
+        element, port = members[bank]
         start, end = lane_ends(bank)
         if isinstance(port, Storage | DissipativePort):
             yield element, (first, start), port.domain
@@ -51,12 +46,12 @@ def _chained(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
 
 
 def is_inner(node: str) -> bool:
-    """Return whether a node is an element's own (no spec can write the colon)."""
+    """Return whether a node is internal to an element: its name has a colon, which specs cannot."""
     return ":" in node
 
 
 def inner_nodes(circuit: Circuit) -> frozenset[str]:
-    """Return the nodes that each lane of a bank has for itself: branches of one bank alone meet."""
+    """Return the nodes that each lane of a bank has for itself: no branch outside meets there."""
     owners = {placed.element: placed.bank for placed in circuit.ports}
     users: dict[str, set[str | None]] = {}
     for element, branch, _ in branches(circuit):
@@ -64,8 +59,8 @@ def inner_nodes(circuit: Circuit) -> frozenset[str]:
             users.setdefault(node, set()).add(owners[element])
     for node in (node for pair in circuit.chains.values() for node in pair):
         users.setdefault(node, set()).add(None)
-    found = (node for node, banks in users.items() if len(banks) == 1 and None not in banks)
-    return frozenset(node for node in found if not is_reference(node))
+    own = (node for node, banks in users.items() if len(banks) == 1 and None not in banks)
+    return frozenset(node for node in own if not is_reference(node))
 
 
 def check_nodes(circuit: Circuit) -> None:
@@ -74,7 +69,7 @@ def check_nodes(circuit: Circuit) -> None:
     Raises
     ------
     NetworkError
-        Naming the node, and what meets there.
+        Naming the node and the elements there.
     """
     domains: dict[str, tuple[PhysicalDomain, str]] = {}
     users: dict[str, list[str]] = {}
@@ -111,7 +106,7 @@ def _check_domain(
 
 
 def _short(circuit: Circuit, element: str, node: str) -> NetworkError:
-    """Return why both ends of a branch cannot be one node."""
+    """Return the error of a branch with both ends at one node."""
     where = f"elements.{element}"
     if hasattr(circuit.model.elements[element], "at"):
         what = f"stands at '{node}', which does not move"
@@ -123,7 +118,7 @@ def _short(circuit: Circuit, element: str, node: str) -> NetworkError:
 def _dangling(
     node: str, element: str, found: list[tuple[str, Branch, PhysicalDomain]]
 ) -> NetworkError:
-    """Return an element that ends where nothing else does, with the nodes it may have meant."""
+    """Return the error of an element alone at a node, with the nodes it may have meant."""
     domain = next(own for _, branch, own in found if node in branch)
     mine = {other for name, branch, _ in found if name == element for other in branch}
     known = dict.fromkeys(
@@ -138,7 +133,7 @@ def _dangling(
 
 
 def _check_chains(circuit: Circuit, users: Mapping[str, list[str]]) -> None:
-    """Check that what is in a chain meets nothing else than its lane, and both of its ends."""
+    """Check that the elements of a chain meet only each other and the ends, and reach both ends."""
     inner = inner_nodes(circuit)
     for bank, pair in circuit.chains.items():
         for node, end in zip(lane_ends(bank), pair, strict=True):
@@ -158,25 +153,25 @@ def _check_chains(circuit: Circuit, users: Mapping[str, list[str]]) -> None:
 
 def _check_ground(found: list[tuple[str, Branch, PhysicalDomain]]) -> None:
     """Check that branches connect every node to the reference of its domain."""
-    beside: dict[str, list[str]] = {}
+    neighbours: dict[str, list[str]] = {}
     for _, (one, other), _ in found:
-        beside.setdefault(one, []).append(other)
-        beside.setdefault(other, []).append(one)
-    tied = reached(list(REFERENCES), beside)
+        neighbours.setdefault(one, []).append(other)
+        neighbours.setdefault(other, []).append(one)
+    tied = reachable(list(REFERENCES), neighbours)
     for element, (node, _), domain in found:
         if node not in tied:
-            near = sorted(n for n in reached([node], beside) if not is_inner(n))
+            near = sorted(n for n in reachable([node], neighbours) if not is_inner(n))
             what = f"nothing connects node '{node}' to '{domain.reference}'"
             expected = f"a path to '{domain.reference}', the {domain.name} reference"
             remedy = f"call one of these nodes '{domain.reference}': {listing(near)}"
             raise NetworkError(what, f"elements.{element}", expected, remedy)
 
 
-def reached(start: Iterable[K], beside: Mapping[K, Iterable[K]]) -> set[K]:
-    """Return what connections lead to from `start`, and that itself."""
+def reachable(start: Iterable[K], neighbours: Mapping[K, Iterable[K]]) -> set[K]:
+    """Return `start` and all that connections lead to from there."""
     found, todo = set(start), list(start)
     while todo:
-        new = [node for node in beside.get(todo.pop(), ()) if node not in found]
+        new = [node for node in neighbours.get(todo.pop(), ()) if node not in found]
         found.update(new)
         todo.extend(new)
     return found

@@ -1,7 +1,7 @@
-"""What junction laws without a solution mean, in the terms of the spec.
+"""The errors of junction laws without a single solution, in the terms of the spec.
 
-Input: the laws, and what elimination found wrong with them.  Output: one `NetworkError` that names
-the elements at fault, where they meet, and what to put there.
+Input: the laws, and the `SingularError` of their elimination.  Output: one `NetworkError` that
+names the elements at fault, where they meet, and what to put there.
 """
 
 from collections.abc import Iterable
@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from piezo_sym.algebra.linear import Form, SingularError
 from piezo_sym.errors import NetworkError, with_article
 from piezo_sym.network.inverse import inverse_field, turn
-from piezo_sym.network.kirchhoff import Edge, Laws
+from piezo_sym.network.kirchhoff import Edge, Laws, term_of
 from piezo_sym.network.nodes import branches, is_inner, is_reference
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements import kind_of
@@ -23,7 +23,7 @@ MIXED = "variables"
 
 
 def refusal(laws: Laws, singular: SingularError, why: str = "") -> NetworkError:
-    """Return the first contradiction between givens, or else what nothing determines."""
+    """Return the error of the first contradiction between givens, or of what is undetermined."""
     for relation in singular.relations:
         edges = _edges(laws, relation)
         if chain := next((bank for kind, bank in relation if kind == "s"), None):
@@ -34,10 +34,10 @@ def refusal(laws: Laws, singular: SingularError, why: str = "") -> NetworkError:
 
 
 def _chain(bank: str, edges: list[Edge]) -> NetworkError:
-    """Return that cells in series fix what they share."""
+    """Return the error of cells in series that fix the through variable they share."""
     port = _port(edges[0])
     word = port.domain.through.name.replace("_", " ")
-    names = _listed([e.placed.element for e in edges])
+    names = _quoted([e.placed.element for e in edges])
     what = f"the {word} that cells in series share is fixed by {names}"
     loose = kind_of("dissipation", port.domain).name
     remedy = f"put a {loose} in parallel to them in each cell, or write the cells one by one"
@@ -46,10 +46,9 @@ def _chain(bank: str, edges: list[Edge]) -> NetworkError:
 
 def _edges(laws: Laws, relation: Form) -> list[Edge]:
     """Return the branches whose givens a relation ties, in the order of their elements."""
-    keys = [label[1] if label[0] == "sum" else label for label in relation]
-    order = list(laws.circuit.model.elements)
-    found = [edge for edge in laws.edges if edge.key in keys]
-    return sorted(found, key=lambda edge: order.index(edge.placed.element))
+    keys, order = [*map(term_of, relation)], list(laws.circuit.model.elements)
+    tied = (edge for edge in laws.edges if edge.key in keys)
+    return sorted(tied, key=lambda edge: order.index(edge.placed.element))
 
 
 def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> NetworkError:
@@ -58,40 +57,40 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
     words = list(dict.fromkeys(p.domain.variable(p.imposes).name for p in ports))
     word = words[0].replace("_", " ") if len(words) == 1 else MIXED
     couplings = [placed.element for placed, _ in couplings_in(laws, relation)]
-    place = f" through {_listed(couplings)}" if couplings else _place(laws, names)
+    place = f" through {_quoted(couplings)}" if couplings else _place(laws, names)
     if len(names) == 1:
-        what = f"the {word} of {_listed(names)} is forced to be zero{place}"
+        what = f"the {word} of {_quoted(names)} is forced to be zero{place}"
         return NetworkError(what, "network", f"a free {word}", "connect it to other nodes")
-    fixed, taken = _fixed(laws, edges), laws.circuit.names
+    fixed, taken = _unturnable(laws, edges), laws.circuit.names
     both = ((e.placed, p) for e, p in zip(edges, ports, strict=True) if e.placed.bank)
     many = (
         p.element for p, port in both if isinstance(port, DissipativePort) and turn(port, taken)
     )
     if not why and (name := next(many, None)):
         why = f", and '{name}' is of a bank, which has no law for all lanes together"
-    what = f"elements {_listed(names)} fix each other's {word}{place}{why}"
+    what = f"elements {_quoted(names)} fix each other's {word}{place}{why}"
     node, mass = _massless(laws, edges)
     put = f"put {with_article(mass)} at '{node}'" if node else ""
     where = "which" if not why and place.endswith(f" '{node}'") else f"and node '{node}'"
     what += f", {where} has no {mass}" * bool(node)
     if fixed:
-        expected, remedy = _inverse(*fixed[0])
+        expected, remedy = _inverse_law(*fixed[0])
         if node:
             return NetworkError(what, "network", f"one, or {expected}", f"{put}; or {remedy}")
-        remedy = f"{remedy}; or {_apart(ports, word == MIXED)}" if len(fixed) > 1 else remedy
+        remedy = f"{remedy}; or {_separation(ports, word == MIXED)}" if len(fixed) > 1 else remedy
         return NetworkError(what, "network", expected, remedy)
     if node and word == MIXED:
         return NetworkError(what, "network", f"{with_article(mass)} there", put)
     if THERMAL in [port.domain for port in ports]:
         pumps = [p for p, port in laws.circuit.of(Coupling) if port.second_domain == THERMAL]
-        remedy = f"put a resistor in series with {_listed([p.element for p in pumps])}"
+        remedy = f"put a resistor in series with {_quoted([p.element for p in pumps])}"
         return NetworkError(what, "network", "a current that is free", remedy)
-    remedy = _apart(ports, word == MIXED or bool(couplings))
+    remedy = _separation(ports, word == MIXED or bool(couplings))
     return NetworkError(what, "network", "independent storage and sources", remedy)
 
 
 def _massless(laws: Laws, edges: list[Edge]) -> tuple[str, str]:
-    """Return the first node whose forces, or torques, are all given, and what it has not."""
+    """Return the first node whose forces or torques are all given, and the kind that it lacks."""
     given = [(edge, _port(edge)) for edge in laws.edges]
     moved = {n for e, port in given if port.imposes is ACROSS for n in e.branch}
     for edge in edges:
@@ -102,7 +101,7 @@ def _massless(laws: Laws, edges: list[Edge]) -> tuple[str, str]:
     return "", ""
 
 
-def _listed(names: list[str]) -> str:
+def _quoted(names: list[str]) -> str:
     return ", ".join(f"'{name}'" for name in names)
 
 
@@ -114,8 +113,8 @@ def _port(edge: Edge) -> Imposing:
     raise TypeError(msg)
 
 
-def _apart(ports: list[Imposing], mixed: bool) -> str:
-    """Return what to put between givens of one variable of a domain, or of several."""
+def _separation(ports: list[Imposing], mixed: bool) -> str:
+    """Return the advice to separate givens of one variable, or of `mixed` variables."""
     domains = list(dict.fromkeys(port.domain for port in ports if port.domain != THERMAL))
     if mixed:
         loose, stores = _kinds("dissipation", domains), _kinds("store", domains, ACROSS)
@@ -134,11 +133,11 @@ def _apart(ports: list[Imposing], mixed: bool) -> str:
 
 
 def _kinds(role: str, domains: Iterable[PhysicalDomain], *imposes: PowerVariable) -> str:
-    """Return the kinds of a form in some domains, as "a mass or capacitor"."""
+    """Return the kinds of a role in some domains, as "a mass or capacitor"."""
     return with_article(" or ".join(kind_of(role, domain, *imposes).name for domain in domains))
 
 
-def _fixed(laws: Laws, edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
+def _unturnable(laws: Laws, edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
     """Return the resistors among branches whose laws cannot be turned round."""
     found = [(edge.placed.element, edge.placed.port) for edge in edges]
     resistors = [(name, port) for name, port in found if isinstance(port, DissipativePort)]
@@ -146,8 +145,8 @@ def _fixed(laws: Laws, edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
     return [(name, port) for name, port in resistors if turn(port, taken) is None]
 
 
-def _inverse(element: str, port: DissipativePort) -> tuple[str, str]:
-    """Return what is expected of a law that gives what is given already, and the law to write."""
+def _inverse_law(element: str, port: DissipativePort) -> tuple[str, str]:
+    """Return the expectation and the remedy for a law that imposes what is imposed already."""
     field, letter = inverse_field(port)
     expected = f"the law of '{element}' as a function of {letter}, which is given"
     remedy = f"give the inverse law, {field} = '...' of {letter}"

@@ -14,9 +14,9 @@ from itertools import groupby
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import balances, bodies, laws
-from piezo_sym.proofs.assumptions import Assumptions, Law, assumptions_of, on_warm_bodies
+from piezo_sym.proofs.assumptions import Assumptions, Law, assumptions_of, with_temperatures
 from piezo_sym.proofs.continuity import continuous
-from piezo_sym.proofs.domain import defined, divisors, not_shown
+from piezo_sym.proofs.domain import divisors, domain_defined, why_empty
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
 from piezo_sym.proofs.published import published
@@ -39,34 +39,34 @@ __all__ = [
 
 
 def decide(iphs: IPHS) -> Report:
-    """Return what is proved, refuted or open of a system, by algebra, solvers and intervals alone.
+    """Return the verdicts on a system by algebra, solvers and intervals alone.
 
-    `piezo_sym.verify` calls a row PROVED only after more than this: see `verification`.
+    `piezo_sym.verify` asks for more before it calls a row PROVED: see `verification`.
     """
     rows: list[Row] = []
     by_name: dict[tuple[str, str], list[Row]] = {}
-    found, asked = obligations(iphs), opinions()
-    empty = not_shown(iphs, assumptions_of(iphs), asked) if found else ""
-    for obligation in found:
-        left = replace(obligation, open_because=empty) if empty else obligation
-        needed = dict.fromkeys((*left.rests_on, ("welldef", left.element)))
-        before = [row for name in needed for row in by_name.get(name, ())]
-        rows.append(row := prove(left, iphs, before, asked))
+    stated, solver = obligations(iphs), opinions()
+    empty = why_empty(iphs, assumptions_of(iphs), solver) if stated else ""
+    for obligation in stated:
+        asked = replace(obligation, open_because=empty) if empty else obligation
+        premises = dict.fromkeys((*asked.rests_on, ("welldef", asked.element)))
+        before = [row for name in premises for row in by_name.get(name, ())]
+        rows.append(row := prove(asked, iphs, before, solver))
         by_name.setdefault((row.id, row.element), []).append(row)
-    return Report(iphs.model.name, (*rows, *units(iphs)), found, published(iphs))
+    return Report(iphs.model.name, (*rows, *units(iphs)), stated, published(iphs))
 
 
 def obligations(iphs: IPHS) -> tuple[Obligation, ...]:
-    """Return what has to be shown of a system, in an order in which each rests on earlier ones."""
+    """Return the obligations of a system, each after those that it rests on."""
     assumptions = assumptions_of(iphs)
     return tuple(
-        on_warm_bodies(made.smooth(), assumptions) for made in _obligations(iphs, assumptions)
+        with_temperatures(made.smooth(), assumptions) for made in _obligations(iphs, assumptions)
     )
 
 
 def _obligations(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     yield from (balances.skew(iphs), balances.casimir(iphs))
-    yield from defined(iphs, assumptions)
+    yield from domain_defined(iphs, assumptions)
     yield from bodies.temperature(iphs, assumptions)
     yield from divisors(iphs, assumptions)
     yield from (balances.energy(iphs, assumptions), balances.entropy(iphs))
@@ -81,13 +81,13 @@ def _obligations(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
 def _of_element(
     iphs: IPHS, element: str, own: tuple[Law, ...], assumptions: Assumptions
 ) -> Iterator[Obligation]:
-    """Yield what has to be shown of the laws of one element."""
-    found = [laws.welldef(own, assumptions), continuous(own, assumptions)]
+    """Yield the obligations on the laws of one element."""
+    stated = [laws.welldef(own, assumptions), continuous(own, assumptions)]
     for law in own:
         if law.letter:
             information = laws.rate_independent if law.rate else laws.odd
-            found += (laws.passive(law, assumptions), information(law, assumptions))
+            stated += (laws.passive(law, assumptions), information(law, assumptions))
         elif any(placed.element == element for placed, _ in iphs.circuit.of(Conductor)):
-            found.append(laws.conducts(law, assumptions))
+            stated.append(laws.conducts(law, assumptions))
     loose = next((law.letter for law in own if None in law.ties), "")
-    yield from (replace(made, loose=loose) for made in found if made)
+    yield from (replace(obligation, loose=loose) for obligation in stated if obligation)

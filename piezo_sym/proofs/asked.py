@@ -32,21 +32,21 @@ from piezo_sym.expressions.tree import (
 from piezo_sym.proofs.binding import connected
 from piezo_sym.proofs.branches import TooManyBranchesError
 from piezo_sym.proofs.obligations import NEVER, Question
-from piezo_sym.proofs.solvers import Answer, Asks
+from piezo_sym.proofs.solvers import Answer, SolverLike
 from piezo_sym.spec.tables import greater
 
-#: Values of a letter that are tried against a law, in this order.
+#: Values of a letter that are tried in a law, in this order.
 TRIED = tuple(
     sign * size
     for size in map(Fraction, ("1", "2", "3", "1/2", "5", "4", "10", "1/10", "20", "100"))
     for sign in (1, -1)
 )
-#: How many of these are tried where a parameter is moved too; its moves, as (factor, summand).
+#: How many of them are tried where a parameter is moved, too; its moves as (factor, summand).
 FEW = 8
 MOVES = tuple((Fraction(a), Fraction(b)) for a, b in ((10, 0), (-1, 0), (1, 1), (1, -1)))
 MOVES += ((Fraction(1, 10), Fraction(0)),)
 
-#: Most questions asked about one law, and how many of them may remain without answer.
+#: Most questions asked about one law, and how many of them may stay unanswered.
 MOST_ASKED, MOST_UNKNOWN = 60, 4
 
 Numbers = Mapping[str, Fraction]
@@ -54,26 +54,26 @@ Numbers = Mapping[str, Fraction]
 
 @final
 @dataclass(frozen=True)
-class Asked:
-    """A domain, and a solver that answers claims on it.
+class Domain:
+    """A domain, and a solver that decides claims on it.
 
     Attributes
     ----------
-    where : the domain.
+    where : the conditions of the domain.
     order : names, in the order in which a witness should be simple.
-    solver : whom to ask.
-    known : which trees were shown to be positive, and which were not.
-    results : the solver's answers so far, counted over all cases of one law.
+    solver : for what is not decided by the form of a claim.
+    known : for trees asked about so far, whether they were shown to be positive.
+    results : the solver's answers so far, in all cases of one law.
     """
 
     where: tuple[Cmp, ...]
     order: tuple[str, ...]
-    solver: Asks
+    solver: SolverLike
     known: dict[Expr, bool] = field(default_factory=dict)
     results: list[str] = field(default_factory=list)
 
-    def within(self, *guards: Cmp) -> Asked:
-        """Return the same for the part of the domain where guards hold."""
+    def within(self, *guards: Cmp) -> Domain:
+        """Return the part of the domain where guards hold."""
         return replace(self, where=(*self.where, *guards), known={})
 
     def positive(self, part: Expr) -> bool:
@@ -103,7 +103,7 @@ class Asked:
         return self.follows(Cmp(">", part, ZERO))
 
     def nonnegative(self, part: Expr) -> bool:
-        """Return whether a tree is by its form nowhere negative, wherever it has a value."""
+        """Return whether a tree is nowhere negative by its form, wherever it has a value."""
         match part:
             case Sym() | Num():
                 return self.positive(part)
@@ -125,7 +125,7 @@ class Asked:
 
     @cached_property
     def samples(self) -> tuple[Numbers, ...]:
-        """A few points of the domain; most claims that do not follow are false at one of them."""
+        """A few points of the domain, at which most false claims are seen to be false."""
         first = self.point(NEVER, self.order)
         if first is None:
             return ()
@@ -137,33 +137,33 @@ class Asked:
 
     def empty(self) -> bool:
         """Return whether no point is in the domain."""
-        made = Question("", self.order, self.where, NEVER, NEVER, whole=True)
-        return self._answer(made).result == "unsat"
+        question = Question("", self.order, self.where, NEVER, NEVER, keep_all=True)
+        return self._answer(question).result == "unsat"
 
     def point(self, claim: Cmp, wanted: Iterable[str]) -> Numbers | None:
         """Return simple numbers in the domain at which a claim is false, or None."""
-        about = self.near((*wanted, *names(claim)))
+        about = self.related((*wanted, *names(claim)))
         named = tuple(Sym(name) for name in self.order if name in about)
         for answer in self._answers(claim, Cmp(">=", Add((ZERO, *named)), ZERO), witness=True):
             if answer.result == "sat":
                 return {n: value for n, value in answer.model.items() if n in self.order}
         return None
 
-    def near(self, words: Iterable[str]) -> set[str]:
-        """Return some names and all that conditions connect them with, directly or indirectly."""
+    def related(self, words: Iterable[str]) -> set[str]:
+        """Return names and all others that conditions connect with them, directly or not."""
         known = {*words}
         return known.union(*(names(condition) for condition in connected(self.where, known)))
 
     def _answers(self, claim: Cmp, original: Cmp, *, witness: bool = False) -> Iterator[Answer]:
-        made = Question("", self.order, self.where, claim, original, witness=witness)
+        question = Question("", self.order, self.where, claim, original, witness=witness)
         try:
-            parts = made.smooth()
+            parts = question.smooth()
         except TooManyBranchesError:
             return iter((Answer("unknown"),))
         return map(self._answer, parts)
 
     def _answer(self, question: Question) -> Answer:
-        """Return the answer to a question; ``unknown`` if the limits on questions are reached."""
+        """Return the answer to a question; ``unknown`` beyond the limits on questions."""
         results = self.results
         if len(results) >= MOST_ASKED or results.count("unknown") >= MOST_UNKNOWN:
             return Answer("unknown")
@@ -175,44 +175,46 @@ class Asked:
         return answer
 
     def breaks(self, claim: Cmp, numbers: Numbers) -> bool:
-        """Return whether numbers lie in the domain and break a claim, which is evaluated exactly.
+        """Return whether numbers lie in the domain and break a claim, evaluated exactly.
 
-        Conditions on names that the claim is not connected to are not looked at.
+        Only conditions that connect to names of the claim are checked.
         """
         near = connected(self.where, names(claim))
         return bool(all_hold(near, numbers)) and all_hold((claim,), numbers) is False
 
 
-def tried(claim: Cmp, letter: str, asked: Asked) -> Numbers | None:
+def simple_counterexample(claim: Cmp, letter: str, domain: Domain) -> Numbers | None:
     """Return the first simple numbers in the domain at which a claim is broken, or None."""
-    placed = _placed(claim, letter, asked, asked.point(NEVER, names(claim)))
-    return next((numbers for numbers in placed if asked.breaks(claim, numbers)), None)
+    placed = _candidates(claim, letter, domain, domain.point(NEVER, names(claim)))
+    return next((numbers for numbers in placed if domain.breaks(claim, numbers)), None)
 
 
-def _placed(claim: Cmp, letter: str, asked: Asked, point: Numbers | None) -> Iterator[Numbers]:
-    """Yield points with simple values of the letter; where a state ties it, the solver's."""
+def _candidates(
+    claim: Cmp, letter: str, domain: Domain, point: Numbers | None
+) -> Iterator[Numbers]:
+    """Yield points with simple values of the letter; where it is tied to states, by the solver."""
     if point is None:
         return
-    if not _tied(letter, asked):
+    if not _tied(letter, domain):
         yield from ({**point, letter: value} for value in TRIED)
         return
     for value in TRIED[:FEW]:
-        found = asked.within(Cmp("=", Sym(letter), Num(value))).point(NEVER, names(claim))
+        found = domain.within(Cmp("=", Sym(letter), Num(value))).point(NEVER, names(claim))
         yield from () if found is None else (found,)
 
 
-def _tied(letter: str, asked: Asked) -> bool:
-    return any(c.op == "=" for c in connected(asked.where, {letter}))
+def _tied(letter: str, domain: Domain) -> bool:
+    return any(c.op == "=" for c in connected(domain.where, {letter}))
 
 
-def moved(claim: Cmp, letter: str, asked: Asked) -> Numbers | None:
+def moved_counterexample(claim: Cmp, letter: str, domain: Domain) -> Numbers | None:
     """Return numbers that break a claim: the simplest of the domain, one parameter moved."""
-    point = asked.point(NEVER, names(claim))
-    if point is None or _tied(letter, asked):
+    point = domain.point(NEVER, names(claim))
+    if point is None or _tied(letter, domain):
         return None
     for name, (factor, step) in product(names(claim), MOVES):
         for value in TRIED[:FEW] if name != letter else ():
             numbers = {**point, name: point[name] * factor + step, letter: value}
-            if asked.breaks(claim, numbers):
+            if domain.breaks(claim, numbers):
                 return numbers
     return None

@@ -1,6 +1,6 @@
-"""What may be assumed of a model: its domain, that temperatures are positive, what ties names.
+"""The assumptions on a model: its domain, positive temperatures, ties between names.
 
-Input: an `IPHS`.  Output: `Assumptions`, and the type `Law` of what questions are about.
+Input: an `IPHS`.  Output: `Assumptions`, and `Law`, the type of the laws that questions are about.
 """
 
 from __future__ import annotations
@@ -26,20 +26,19 @@ from piezo_sym.spec.tables import condition_text, conditions
 @final
 @dataclass(frozen=True)
 class Law:
-    """A law of an element, in the words of the domain.
+    """A law of an element, in names of the domain.
 
     Attributes
     ----------
-    element : whose it is.
-    name : what it gives, such as ``V_hysteron``.
+    element : its name.
+    name : of the quantity that the law gives, such as ``V_hysteron``.
     tree : the law.
     letter : of a dissipative law, the letter of its conjugate variable.
-    jumps : whether the spec says that it is discontinuous on purpose.
-    ties : what its letter is as a function of states, where not every value is taken; None if that
-        is not known.
-    written : what the spec writes in its place, where the network turns a law round, or joins it.
+    jumps : whether the spec declares it discontinuous.
+    ties : of a letter that may not take every value, its value in states; None if not known.
+    written : the laws of the spec, where the network turns the law round or joins stores.
     rate : of a slip, the letter of the rate that drives it.
-    found : whether it is an energy that no spec gives.
+    derived : whether it is an integrated energy, which the spec does not give.
     """
 
     element: str
@@ -50,7 +49,7 @@ class Law:
     ties: tuple[Cmp | None, ...] = ()
     written: tuple[Expr, ...] = ()
     rate: str = ""
-    found: bool = False
+    derived: bool = False
 
     @property
     def of_element(self) -> str:
@@ -61,15 +60,15 @@ class Law:
 @final
 @dataclass(frozen=True)
 class Assumptions:
-    """What questions about a model may assume, and the order of names in a witness.
+    """The assumptions of questions about a model, and the order of names in a witness.
 
     Attributes
     ----------
-    where : the domain, that temperatures are positive, and what ties names to states.
+    where : the domain, T > 0, and ties of names to states.
     order : names, in the order in which a witness should be simple.
     texts : the domain, as text.
     warm : each temperature, and the obligation that it is positive.
-    fixed : names that have one value throughout a run: the parameters.
+    fixed : names that are constant in a run: the parameters.
     """
 
     where: tuple[Cmp, ...]
@@ -79,13 +78,13 @@ class Assumptions:
     fixed: frozenset[str] = frozenset()
 
     def about(self, *laws: Law) -> Assumptions:
-        """Return the assumptions for questions about laws, whose letters are names too."""
+        """Return the assumptions for questions about laws, with their letters and ties."""
         letters = dict.fromkeys(x for law in laws for x in (law.letter, law.rate) if x)
         ties = [tie for law in laws for tie in law.ties if tie]
         return replace(self, order=(*self.order, *letters), where=(*self.where, *ties))
 
     def given(self, *conditions: Cmp) -> Assumptions:
-        """Return the assumptions with some conditions more."""
+        """Return the assumptions with additional conditions."""
         return replace(self, where=(*self.where, *conditions))
 
     def question(self, label: str, claim: Cmp, original: Cmp | None = None) -> Question:
@@ -94,7 +93,7 @@ class Assumptions:
 
 
 def assumptions_of(iphs: IPHS) -> Assumptions:
-    """Return the domain of a model, and that temperatures are positive (row ``temperature``)."""
+    """Return the assumptions on a model; row ``temperature`` proves that of T > 0."""
     trees = tuple(condition.tree for condition in conditions(iphs.model))
     placed = tuple(iphs.circuit.of(Body))
     words = [port.temperature for _, port in placed]
@@ -109,30 +108,30 @@ def assumptions_of(iphs: IPHS) -> Assumptions:
     ties = tuple(
         Cmp("=", Sym(port.temperature), port.law)
         for _, port in placed
-        if port.state in used or not _takes_all(port.law, port.state)
+        if port.state in used or not _takes_every_value(port.law, port.state)
     )
     texts, fixed = tuple(map(condition_text, trees)), frozenset(iphs.model.parameters)
     return Assumptions((*trees, *warm, *ties), order, texts, rows, fixed)
 
 
-def _takes_all(law: Expr, state: str) -> bool:
+def _takes_every_value(law: Expr, state: str) -> bool:
     """Return whether a temperature takes every positive value, whatever the other states are.
 
-    It does if it is positive, rises with S (row ``temperature``), and is exp(a*S + b) times what
-    does not depend on S, as a and b do not.
+    It does if it is positive, rises with S (row ``temperature``), and is c*exp(a*S + b) with a, b
+    and c free of S.
     """
     match law:
         case Mul(left, right) if state not in names(left):
-            return _takes_all(right, state)
+            return _takes_every_value(right, state)
         case Mul(left, right) | Div(left, right) if state not in names(right):
-            return _takes_all(left, state)
+            return _takes_every_value(left, state)
         case Call("exp", (arg,)):
             return state not in names(derivative(arg, state))
     return False
 
 
-def on_warm_bodies(obligation: Obligation, assumptions: Assumptions) -> Obligation:
-    """Return an obligation that rests on the temperatures its questions speak of."""
+def with_temperatures(obligation: Obligation, assumptions: Assumptions) -> Obligation:
+    """Return an obligation that rests on the rows of the temperatures in its questions, too."""
     if obligation.id == "temperature":
         return obligation
     used = {name for question in obligation.questions for name in question.words}

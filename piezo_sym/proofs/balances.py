@@ -1,8 +1,8 @@
-"""What algebra decides about a system: skew, casimir, energy, entropy, exergy, environment.
+"""The obligations that algebra decides: skew, casimir, energy, entropy, exergy, environment.
 
-Input: an `IPHS`.  Output: obligations with residuals.  The system stands in named co-states, so
-that each property is the vanishing of a normal form, a polynomial in independent symbols and in
-sums over lanes: zero proves it for every state, input, parameter and every r.
+Input: an `IPHS`.  Output: obligations with residuals.  In named co-states a residual has a normal
+form, a polynomial in independent symbols and in sums over lanes: zero proves the property for every
+state, input, parameter and bank size.
 """
 
 from collections.abc import Container, Iterator
@@ -20,8 +20,8 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import Energy
 from piezo_sym.proofs.assumptions import Assumptions, Law
 from piezo_sym.proofs.branches import TooManyBranchesError, branches, parts
-from piezo_sym.proofs.continuity import unbroken
-from piezo_sym.proofs.laws import valued
+from piezo_sym.proofs.continuity import jump_questions
+from piezo_sym.proofs.laws import value_questions
 from piezo_sym.proofs.obligations import NEVER, Obligation, Question, Residual
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -36,7 +36,7 @@ from piezo_sym.spec.tables import conditions, greater
 
 
 def skew(iphs: IPHS) -> Obligation:
-    """J0 and every J_k are skew, for every pair of lanes of every bank."""
+    """State that J0 and every J_k are skew, for every pair of lanes of every bank."""
     system = iphs.system
     matrices = [("J0", system.J0)]
     matrices += [(f"J_{slot.label}", system.J(k)) for k, slot in enumerate(system.processes)]
@@ -51,24 +51,26 @@ def skew(iphs: IPHS) -> Obligation:
 
 
 def casimir(iphs: IPHS) -> Obligation:
-    """Entropy is a Casimir function of J0."""
+    """State that the entropy is a Casimir function of J0."""
     found = tuple(_entries("J0 dS/dx", iphs.system.J0 @ iphs.system.dS))
     latex = r"J_0 \, \partial S/\partial x = 0"
     return Obligation("casimir", "", "J0 dS/dx = 0", latex, residuals=found)
 
 
 def energy(iphs: IPHS, assumptions: Assumptions) -> Obligation:
-    """First law: U does not jump, dU/dx is the co-states, and dU/dt is the power put in."""
+    """State the first law: U does not jump, dU/dx = E, and dU/dt is the supply rate."""
     system = iphs.system
     balance = (system.E.T @ system.rhs - system.y.T @ system.u)[0, 0]
     found = (*_gradient(iphs, assumptions), Residual("dU/dt - y^T u", balance))
     made = Obligation("energy", "", "dU/dt = y^T u", r"\dot U = y^\top u", residuals=found)
-    laws = [Law("", "U", energy.law, found=energy.found) for energy in iphs.energies]
-    return made.asking(lambda: (q for law in laws for q in unbroken(law, assumptions)), "an energy")
+    laws = [Law("", "U", energy.law, derived=energy.derived) for energy in iphs.energies]
+    return made.asking(
+        lambda: (q for law in laws for q in jump_questions(law, assumptions)), "an energy"
+    )
 
 
 def entropy(iphs: IPHS) -> Obligation:
-    """Entropy balance: what the processes produce and what the inputs bring, eq. (5)."""
+    """State the entropy balance: production of the processes plus supply of the inputs, eq. (5)."""
     system = iphs.system
     produced = system.R.T @ system.bracket + system.y_s.T @ system.u
     balance = (system.dS.T @ system.rhs - produced)[0, 0]
@@ -82,7 +84,7 @@ def entropy(iphs: IPHS) -> Obligation:
 
 
 def sigma(iphs: IPHS) -> Obligation:
-    """Second law: what the processes produce is not negative."""
+    """State the second law: the entropy production of the processes is not negative."""
     statement = "sigma = sum_k W_k z_k/T_k >= 0"
     latex = r"\sigma = \sum_k W_k z_k / T_k \ge 0"
     return Obligation("sigma", "", statement, latex, rests_on=premises(iphs))
@@ -98,7 +100,7 @@ def premises(iphs: IPHS) -> tuple[tuple[str, str], ...]:
 
 
 def exergy(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
-    """Yield the balance of U - T_e S, if there is an environment, at one constant T_e."""
+    """Yield the exergy balance d(U - T_e S)/dt <= 0 at one constant T_e, if there is one."""
     exchanges = tuple(iphs.circuit.of(Exchange))
     if not exchanges:
         return
@@ -117,11 +119,11 @@ def exergy(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         residuals=(Residual("d(U - T_e S)/dt + T_e sigma + lam (T - T_e)^2/T", residual),),
         rests_on=(("sigma", ""),),
     )
-    yield made.asking(lambda: _cooling(iphs, assumptions), "a conductance")
+    yield made.asking(lambda: _exchange_questions(iphs, assumptions), "a conductance")
 
 
 def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
-    """Yield the production of the system and its environment together, if there is one."""
+    """Yield the entropy balance of the system with its environment, if there is one."""
     if not any(True for _ in iphs.circuit.of(Exchange)):
         return
     system = iphs.system
@@ -140,7 +142,7 @@ def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         residuals=(residual,),
         rests_on=(("sigma", ""),),
     )
-    yield made.asking(lambda: _cooling(iphs, assumptions), "a conductance")
+    yield made.asking(lambda: _exchange_questions(iphs, assumptions), "a conductance")
 
 
 def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
@@ -151,18 +153,18 @@ def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
         yield conductance, iphs.symbols[temperature], iphs.symbols[port.input]
 
 
-def _cooling(iphs: IPHS, assumptions: Assumptions) -> Iterator[Question]:
-    """Yield what heat exchange needs: a conductance that is not negative, a T_e above zero."""
+def _exchange_questions(iphs: IPHS, assumptions: Assumptions) -> Iterator[Question]:
+    """Yield the questions on heat exchange: conductance >= 0 and T_e > 0."""
     for placed, port in iphs.circuit.of(Exchange):
         warm, conducts = Cmp(">", Sym(port.input), ZERO), Cmp(">=", port.conductance, ZERO)
-        yield from valued(port.conductance, assumptions)
+        yield from value_questions(port.conductance, assumptions)
         label = f"{spell(port.conductance)} >= 0 ({placed.element})"
         yield assumptions.question(label, conducts)
         yield assumptions.question(f"{port.input} > 0", warm)
 
 
 def _gradient(iphs: IPHS, assumptions: Assumptions) -> Iterator[Residual]:
-    """Yield dU/dx minus the co-state, for each state."""
+    """Yield the residual dU/dx - E for each state."""
     stored: dict[str, list[tuple[Energy, sp.Expr]]] = {}
     for energy in iphs.energies:
         law = iphs.symbols.law(energy.law, {})
@@ -177,36 +179,35 @@ def _gradient(iphs: IPHS, assumptions: Assumptions) -> Iterator[Residual]:
         rise = add(*(slope(energy.law, port.state) for energy, _ in own))
         if residual != 0:
             try:
-                empty = tuple(_unlike(iphs, rise, port.law, port.state, assumptions))
+                empty = tuple(_slope_questions(iphs, rise, port.law, port.state, assumptions))
                 residual = residual if empty else sp.S.Zero
             except TooManyBranchesError:
                 pass
-        found = any(energy.found for energy, _ in own)
-        yield Residual(f"dU/d{port.state}", residual, empty, found)
+        derived = any(energy.derived for energy, _ in own)
+        yield Residual(f"dU/d{port.state}", residual, empty, derived)
 
 
-def _unlike(
+def _slope_questions(
     iphs: IPHS, slope: Expr, law: Expr, state: str, assumptions: Assumptions
 ) -> Iterator[Question]:
-    """Yield for each branch on which an energy's slope is not a co-state law if it is ever taken.
+    """Yield the questions whether branches are empty where an energy's slope is not the co-state.
 
-    Both have a value there.  On a branch that is an edge, a = b, they are compared there: a slope
-    of one side is as good as that of the other, for rows ``continuous`` say that neither energy nor
-    law jumps.
+    A branch that is an edge, a = b, is compared on the edge.  The slope of either side may be used
+    there, as rows ``continuous`` show that neither energy nor law jumps.
     """
     known = tuple(condition.tree for condition in conditions(iphs.model))
     positive = {c.left for c in map(greater, known) if c.op == ">" and c.right == ZERO}
     for branch in branches(Call("together", (slope, law)), known):
-        where = tuple(_undivided(condition, positive) for condition in branch.conditions)
+        where = tuple(_numerator(condition, positive) for condition in branch.conditions)
         left, right = (iphs.symbols.law(part, {}) for part in parts(branch))
-        at = dict(_edges(iphs, where, iphs.symbols[state]))
+        at = dict(_state_on_edge(iphs, where, iphs.symbols[state]))
         if not vanishes((left - right).xreplace(at)):
             asked = assumptions.question(f"dU/d{state} is the co-state", NEVER)
             yield replace(asked, where=(*known, *branch.conditions), branch=branch.conditions)
 
 
-def _undivided(condition: Cmp, positive: Container[Expr]) -> Cmp:
-    """Return a comparison with zero without divisors and numbers that are positive."""
+def _numerator(condition: Cmp, positive: Container[Expr]) -> Cmp:
+    """Return a comparison with zero without its positive divisors and numeric factors."""
 
     def plain(node: Expr) -> Expr:
         match node:
@@ -220,10 +221,10 @@ def _undivided(condition: Cmp, positive: Container[Expr]) -> Cmp:
     return Cmp(condition.op, left, condition.right)
 
 
-def _edges(
+def _state_on_edge(
     iphs: IPHS, where: tuple[Cmp, ...], state: sp.Symbol
 ) -> Iterator[tuple[sp.Symbol, sp.Expr]]:
-    """Yield what the state is where a branch is no more than an edge."""
+    """Yield the state and its value if a branch is an edge, at which it has just one."""
     for condition in where:
         if condition.op == ">=" and Cmp("<=", condition.left, condition.right) in where:
             left, right = (iphs.symbols.law(e, {}) for e in (condition.left, condition.right))

@@ -1,8 +1,8 @@
-"""Which conditions of a domain a question needs: those that bind the names of its claim.
+"""The conditions of a domain that bind the names of a question's claim.
 
-Input: conditions, and names.  Output: the conditions that are connected to them, or of these the
-ones that matter.  A domain is looked through once, in `_Index`, for all questions that begin with
-it: what a question costs grows with what it needs, not with the model.
+Input: conditions, and names.  Output: the conditions connected to the names, or those among them
+that matter.  An `_Index` of a domain serves all questions whose conditions begin with it, so that
+the cost of a question does not grow with the model.
 """
 
 from collections.abc import Collection, Iterable, Iterator
@@ -11,14 +11,14 @@ from typing import final
 
 from piezo_sym.expressions.tree import Cmp, Sym, names
 
-#: Of how many beginnings an index is kept; and how many more conditions a question may have.
+#: Indexes kept; conditions that a question may have beyond those of its index.
 MOST_KEPT, MOST_MORE = 8, 32
 
 
 def connected(conditions: Iterable[Cmp], words: Iterable[str]) -> tuple[Cmp, ...]:
-    """Return the conditions that are joined to some names, directly or by way of others.
+    """Return the conditions that share names with `words`, directly or through other conditions.
 
-    Leaving out the others can only make a claim harder to prove; a counterexample has to keep them.
+    Leaving out the others can only make a claim harder to prove; a counterexample needs them.
     """
     near = set(words)
     found = [(condition, names(condition)) for condition in conditions]
@@ -28,10 +28,10 @@ def connected(conditions: Iterable[Cmp], words: Iterable[str]) -> tuple[Cmp, ...
 
 
 def binding(conditions: tuple[Cmp, ...], words: Collection[str]) -> tuple[Cmp, ...]:
-    """Return the connected conditions, without those that some value of a name keeps in any case.
+    """Return the connected conditions without those that a free name can always satisfy.
 
-    So it is where all conditions on a name, which is none of `words`, bound it from the same side:
-    the temperatures of other bodies, say, of which is said that they are above a common one.
+    A name outside `words` can if all conditions bound it from the same side, such as the
+    temperatures of other bodies that are above a common one.
     """
     index = _index_of(conditions)
     more = {c: None for c in conditions[index.length :] if c not in index.place}
@@ -47,13 +47,10 @@ def binding(conditions: tuple[Cmp, ...], words: Collection[str]) -> tuple[Cmp, .
 def _freed(
     found: Iterable[Cmp], words: Collection[str], others: dict[str, set[str]]
 ) -> Iterator[tuple[str, tuple[Cmp, ...]]]:
-    """Yield names, and the conditions that hold by their choice, which are left out from then on.
+    """Yield free names with the conditions that they satisfy, which are then left out.
 
-    Which name comes first makes no difference in the end: fewer conditions only free more names.
-
-    Parameters
-    ----------
-    others : by name, the sides from which conditions that stay bound it.
+    The order of names does not matter: fewer conditions only free more names.  `others` are, by
+    name, the sides from which further conditions bound it.
     """
     users: dict[str, dict[Cmp, str]] = {}
     for condition in found:
@@ -80,10 +77,10 @@ class _Index:
 
     Attributes
     ----------
-    length : how many they are.
-    place : each of them once, and its place.
-    kept : those that no choice of names makes true.
-    sides : by name, from which sides these bound it.
+    length : their number.
+    place : the index of each distinct condition.
+    kept : those that no free name satisfies.
+    sides : by name, the sides from which these bound it.
     """
 
     def __init__(self, conditions: tuple[Cmp, ...]) -> None:
@@ -102,7 +99,7 @@ class _Index:
             self._joined.update(dict.fromkeys({*others} - {first}, first))
 
     def group(self, name: str) -> str:
-        """Return a name that stands for all that conditions join to this one."""
+        """Return the representative of all names that conditions connect with this one."""
         while (joined := self._joined.get(name)) is not None:
             further = self._joined.get(joined)
             if further is not None:
@@ -111,16 +108,16 @@ class _Index:
         return name
 
     def near(self, words: Iterable[str], more: Iterable[Cmp]) -> set[str]:
-        """Return the groups that words are joined to, by way of more conditions, too."""
+        """Return the groups connected to `words`, also through the additional conditions."""
         near, left = {*map(self.group, words)}, [{*map(self.group, names(c))} for c in more]
         while grown := {g for groups in left if not near.isdisjoint(groups) for g in groups} - near:
             near |= grown
         return near
 
     def needed(self, words: Collection[str], more: Iterable[Cmp]) -> Iterator[Cmp]:
-        """Yield more conditions, and of what names were free to make true what they may not be now.
+        """Yield the additional conditions, and those whose free name is free no more.
 
-        They are not: `words`, and names that others bound from another side.
+        These names are `words`, and names that yielded conditions bound from another side.
         """
         sides: dict[str, set[str]] = {}
         waiting, here = [*words], [*more]
@@ -140,13 +137,13 @@ class _Index:
                     here = [*freed.pop(name)]
 
 
-#: The beginnings that were last met; and the last question's conditions.
+#: The last indexes, and the conditions of the last question.
 _known: list[_Index] = []
 _last: list[tuple[Cmp, ...]] = [()]
 
 
 def _index_of(conditions: tuple[Cmp, ...]) -> _Index:
-    """Return the index of what conditions begin with, made anew if all known are much shorter."""
+    """Return the longest known index that conditions begin with; a new one if that is too short."""
     before, _last[0] = _last[0], conditions
     fit = (one for one in _known if conditions[: one.length] == one.conditions)
     found = max(fit, key=lambda one: one.length, default=None)
@@ -162,12 +159,12 @@ def _index_of(conditions: tuple[Cmp, ...]) -> _Index:
 
 @lru_cache(1 << 14)
 def _sides(condition: Cmp) -> tuple[tuple[str, str], ...]:
-    """Return each name of a comparison, and from which side it is bounded, if it stands alone."""
+    """Return each name of a comparison with the side from which it is bounded, see `_side`."""
     return tuple((name, _side(name, condition)) for name in names(condition))
 
 
 def _side(name: str, condition: Cmp) -> str:
-    """Return from which side a comparison bounds a name, which stands alone; else nothing."""
+    """Return the side from which a comparison bounds a name that is one of its sides, or ''."""
     sides = {"<": "below", ">": "above"}.get(condition.op[0], "")
     match condition.left, condition.right:
         case Sym(own), other if own == name and name not in names(other):

@@ -47,8 +47,8 @@ class Branch:
     @property
     def path(self) -> tuple[Cmp, ...]:
         """Its conditions, each after what must hold for it to have a value; the value's last."""
-        steps = ((*partial(part), part) for part in self.conditions)
-        return (*(claim for step in steps for claim in step), *partial(self.value))
+        steps = ((*value_conditions(part), part) for part in self.conditions)
+        return (*(claim for step in steps for claim in step), *value_conditions(self.value))
 
 
 @final
@@ -60,11 +60,7 @@ class TooManyBranchesError(Exception):
 
 
 def branches(law: Expr, known: Iterable[Cmp] = ()) -> tuple[Branch, ...]:
-    """Return the branches of a law.
-
-    Parameters
-    ----------
-    known : comparisons that hold wherever the branches are used, such as those of a domain.
+    """Return the branches of a law where the `known` comparisons of a domain hold.
 
     Raises
     ------
@@ -80,15 +76,15 @@ def branches(law: Expr, known: Iterable[Cmp] = ()) -> tuple[Branch, ...]:
 
 
 def settled(law: Expr, known: Iterable[Cmp]) -> Expr:
-    """Return a law with choices for its kinks; `known` comparisons decide theirs."""
-    if not bends(law):
+    """Return a law with its kinks as choices, those on `known` comparisons decided."""
+    if not has_kinks(law):
         return law
     holding = frozenset(condition for condition in known if condition.op in OPPOSITE)
     facts = {opposite(condition): False for condition in holding}
     return decided(with_choices(law, holding), facts | dict.fromkeys(holding, True))
 
 
-def bends(node: Node) -> bool:
+def has_kinks(node: Node) -> bool:
     """Return whether a tree has choices, or functions with kinks."""
     return any(
         isinstance(n, If) or (isinstance(n, Call) and n.function in KINKED) for n in walk(node)
@@ -96,20 +92,20 @@ def bends(node: Node) -> bool:
 
 
 def cover(found: tuple[Branch, ...]) -> Cmp:
-    """Return the claim that at every point the conditions of one of the branches hold."""
-    inside = [_indicator(branch.conditions) for branch in found]
-    return Cmp(">=", Add(tuple(inside)) if len(inside) > 1 else inside[0], ONE)
+    """Return the claim that at every point the conditions of some branch hold."""
+    inside = tuple(_indicator(branch.conditions) for branch in found)
+    return Cmp(">=", Add(inside) if len(inside) > 1 else inside[0], ONE)
 
 
 def _indicator(conditions: tuple[Cmp, ...]) -> Expr:
-    """Return a law that is 1 where all comparisons hold, in the order of evaluation, else 0."""
+    """Return a law that is 1 where all comparisons hold, evaluated in order, and else 0."""
     if not conditions:
         return ONE
     return If(_indicator(conditions[1:]), conditions[0], ZERO)
 
 
 def parts(branch: Branch) -> tuple[Expr, ...]:
-    """Return the smooth laws of a branch of several laws taken together."""
+    """Return the smooth laws of a branch of ``together``, which takes several laws."""
     if not isinstance(branch.value, Call):
         msg = "a branch of one law has no parts"
         raise TypeError(msg)
@@ -117,7 +113,7 @@ def parts(branch: Branch) -> tuple[Expr, ...]:
 
 
 def with_choices(node: Expr, known: Container[Cmp] = ()) -> Expr:
-    """Return a law with each function that has kinks written as choices; `known` ones hold."""
+    """Return a law with kinked functions as choices; `known` comparisons hold."""
     inner = rebuild(node, lambda part: with_choices(part, known))
     if not isinstance(inner, Call) or inner.function not in KINKED:
         return inner
@@ -131,7 +127,7 @@ def with_choices(node: Expr, known: Container[Cmp] = ()) -> Expr:
 
 
 def choices(node: Node) -> tuple[Cmp, ...]:
-    """Return the comparisons of a law's choices, each once, outermost first."""
+    """Return the distinct comparisons of a law's choices, outermost first."""
     return tuple(dict.fromkeys(n.condition for n in walk(node) if isinstance(n, If)))
 
 
@@ -141,7 +137,7 @@ def opposite(condition: Cmp) -> Cmp:
 
 
 def _pieces(law: Expr, path: tuple[Cmp, ...]) -> Iterator[Branch]:
-    """Yield the branches of a law below the comparisons decided so far."""
+    """Yield the branches of a law after the comparisons decided so far."""
     choice = first_choice(law)
     if choice is None:
         yield Branch(path, law)
@@ -152,8 +148,8 @@ def _pieces(law: Expr, path: tuple[Cmp, ...]) -> Iterator[Branch]:
         yield from _pieces(taken, (*path, condition))
 
 
-def partial(node: Node) -> Iterator[Cmp]:
-    """Yield what must hold for a smooth tree to have a value, inner parts first."""
+def value_conditions(node: Node) -> Iterator[Cmp]:
+    """Yield the conditions under which a smooth tree has a value, inner parts first."""
     for part in reversed(tuple(walk(node))):
         match part:
             case Div(_, right) if not isinstance(right, Num) or right == ZERO:

@@ -1,10 +1,10 @@
 """Continuity: a law with branches does not jump where two of them meet.
 
-Input: a law.  Output: an obligation with a question on each pair of branches (`continuous`); of
-these the ones that have to be asked (`needed`); whether a law jumps at a point (`jumps`).  With
-each < read as <=, the conditions of a branch describe a closed part of the domain; the parts cover
-it.  A law that is continuous on each of finitely many closed parts, and agrees with itself where
-they meet, is continuous: the pasting lemma.
+Input: a law.  Output: an obligation with a question on each pair of branches (`continuous`); those
+that have to be asked (`neighbour_questions`); whether a law jumps at a point (`jumps`).  With each
+< read as <=, the conditions of a branch describe a closed part of the domain, and the parts cover
+it.  A law that is continuous on finitely many closed parts, and has equal values where they meet,
+is continuous: the pasting lemma.
 """
 
 from collections.abc import Iterator, Mapping
@@ -24,30 +24,30 @@ from piezo_sym.proofs.branches import (
     branches,
     choices,
     opposite,
-    partial,
     settled,
+    value_conditions,
     with_choices,
 )
-from piezo_sym.proofs.laws import parts_valued, valued
+from piezo_sym.proofs.laws import part_questions, value_questions
 from piezo_sym.proofs.obligations import NEVER, Meeting, Obligation, Question
-from piezo_sym.proofs.solvers import Asks
+from piezo_sym.proofs.solvers import SolverLike
 
-#: More branches than these are not compared, each with each.
+#: A law with more branches is left open, as each pair is compared.
 MOST = 60
 RELAXED = {"<": "<=", ">": ">="}
-#: Distances from the point at which a branch is looked for.
+#: Distances from a point at which a branch is searched for.
 STEPS = tuple(Fraction(1, 10**n) for n in (6, 12, 18))
-#: By how much a value must grow from one step to the next to be called a pole.
+#: The growth of a value from one step to the next that indicates a pole.
 GROWTH = 10
 
 Numbers = Mapping[str, Fraction]
 
 
 def continuous(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | None:
-    """State that the laws of one element have no jump; None if none has an edge to jump at.
+    """State that the laws of one element have no jump; None if none has an edge.
 
-    An edge is where states, inputs or temperatures choose another branch: a branch chosen by
-    parameters alone is the same throughout a run.  Laws that jump on purpose are left out.
+    At an edge states, inputs or temperatures select another branch; parameters alone select the
+    same branch throughout a run.  Laws that the spec declares discontinuous are left out.
     """
     own = [law for law in laws if not law.jumps and _edges(law, assumptions)]
     if not own:
@@ -55,16 +55,19 @@ def continuous(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | 
     element, latex = own[0].element, r"W_k(z^-) = W_k(z^+)"
     statement = _statement(*own)
     made = Obligation("continuous", element, statement, latex, assumptions.texts)
-    tables = [law for law in own if not _chooses(law.tree)]
-    alone = [law for law in tables if not law.letter]  # of others row welldef is there in any case
+    tables = [law for law in own if not _has_choices(law.tree)]
+    alone = [
+        law for law in tables if not law.letter
+    ]  # laws with a letter have a row welldef anyway
     valid = made.asking(
-        lambda: (q for law in alone for q in valued(law.tree, assumptions)), own[0].of_element
+        lambda: (q for law in alone for q in value_questions(law.tree, assumptions)),
+        own[0].of_element,
     )
     if valid.open_because:
         return valid
     given = valid.questions or len(alone) < len(tables)
     asked = made.asking(
-        lambda: (q for law in own for q in unbroken(law, assumptions.about(law))),
+        lambda: (q for law in own for q in jump_questions(law, assumptions.about(law))),
         own[0].of_element,
     )
     return replace(asked, rests_on=(("welldef", element),) if given else ())
@@ -77,46 +80,46 @@ def _statement(*laws: Law) -> str:
     return f"{named} has no jump where its branches meet"
 
 
-def unbroken(law: Law, assumptions: Assumptions) -> Iterator[Question]:
-    """Yield the questions whether a law has no jump, as a part of what another row says.
-
-    They are on each pair of branches that may meet, and whether the branches cover all.
+def jump_questions(law: Law, assumptions: Assumptions) -> Iterator[Question]:
+    """Yield a question on each pair of branches that may meet, and whether they cover all points.
 
     Raises
     ------
     TooManyBranchesError
         If the law has too many branches.
     """
-    if not (_edges(law, assumptions) and _chooses(law.tree)):
+    if not (_edges(law, assumptions) and _has_choices(law.tree)):
         return
     found = branches(law.tree, assumptions.where)
     if len(found) > MOST:
         raise TooManyBranchesError(MOST)
     tree = settled(law.tree, assumptions.where)
     for one, other in combinations(found, 2):
-        if one.value != other.value and not _apart(one, other, assumptions):
+        if one.value != other.value and not _never_meet(one, other, assumptions):
             meeting = Meeting(tree, (one, other), assumptions.where, assumptions.fixed)
-            yield from (replace(q, found=law.found) for q in _meeting(meeting, assumptions))
+            yield from (
+                replace(q, derived=law.derived) for q in _meeting_questions(meeting, assumptions)
+            )
     if len(found) > 1:
         asked = assumptions.question(_statement(law), Cmp("=", law.tree, law.tree))
-        yield replace(asked.covered(found), found=law.found)
+        yield replace(asked.covered(found), derived=law.derived)
 
 
 def _edges(law: Law, assumptions: Assumptions) -> list[Cmp]:
-    """Return the comparisons that choose in a law, but for those that parameters decide."""
+    """Return the conditions of a law's choices that parameters alone do not decide."""
     return [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= assumptions.fixed]
 
 
-def _chooses(law: Expr) -> bool:
-    """Return whether a law chooses other than by tables, which are continuous in all arguments.
+def _has_choices(law: Expr) -> bool:
+    """Return whether a law has choices or kinks outside of tables.
 
-    That holds where their knots increase, and a law has a value only there.
+    Tables are continuous in all arguments where their knots increase, and have a value only there.
     """
     kinks = (n for n in walk(law) if isinstance(n, If) or (isinstance(n, Call) and not knots(n)))
     return any(isinstance(n, If) or n.function in KINKED for n in kinks)
 
 
-def _apart(one: Branch, other: Branch, assumptions: Assumptions) -> bool:
+def _never_meet(one: Branch, other: Branch, assumptions: Assumptions) -> bool:
     """Return whether parameters alone choose between two branches: then they never meet."""
     return any(
         opposite(condition) in other.conditions and {*names(condition)} <= assumptions.fixed
@@ -124,17 +127,17 @@ def _apart(one: Branch, other: Branch, assumptions: Assumptions) -> bool:
     )
 
 
-def _meeting(meeting: Meeting, assumptions: Assumptions) -> Iterator[Question]:
+def _meeting_questions(meeting: Meeting, assumptions: Assumptions) -> Iterator[Question]:
     """Yield the questions whether two branches have values where they meet, and equal ones.
 
-    What the domain says, or was asked of them before, is not asked again.
+    Conditions of the domain, and those asked before, are not asked again.
     """
     one, other = meeting.sides
     where, border = assumptions.where, tuple(_border(one, other, assumptions.fixed))
     found: list[Question] = []
     for part in (*border, add(one.value, neg(other.value))):
-        found += (q for q in parts_valued(part, where, assumptions) if q.claim not in where)
-        where = (*where, *partial(part), *((part,) if isinstance(part, Cmp) else ()))
+        found += (q for q in part_questions(part, where, assumptions) if q.claim not in where)
+        where = (*where, *value_conditions(part), *((part,) if isinstance(part, Cmp) else ()))
     edge = next(c for c in border if c.op == "=")
     at = f"{spell(edge.left)} = {spell(edge.right)}"
     label = f"{spell(one.value)} = {spell(other.value)} at {at}"
@@ -145,9 +148,9 @@ def _meeting(meeting: Meeting, assumptions: Assumptions) -> Iterator[Question]:
 
 
 def _border(one: Branch, other: Branch, fixed: frozenset[str]) -> Iterator[Cmp]:
-    """Yield what holds where the closed parts of two branches meet; one comparison is an edge.
+    """Yield what holds where the closed parts of two branches meet; equations are edges.
 
-    What parameters alone decide stays as it is: they are the same on both sides of an edge.
+    Conditions on parameters alone stay as they are: parameters are constant across an edge.
     """
     for condition in dict.fromkeys((*one.conditions, *other.conditions)):
         both = condition in one.conditions and opposite(condition) in other.conditions
@@ -159,19 +162,19 @@ def _border(one: Branch, other: Branch, fixed: frozenset[str]) -> Iterator[Cmp]:
             yield Cmp(op, condition.left, condition.right)
 
 
-def needed(questions: tuple[Question, ...], solver: Asks) -> Iterator[Question]:
-    """Yield the questions that are left: of those on two branches of a law, the ones on neighbours.
+def neighbour_questions(questions: tuple[Question, ...], solver: SolverLike) -> Iterator[Question]:
+    """Yield the questions without those on two branches that are no neighbours.
 
     Two branches are neighbours if there is no third whose conditions are all among theirs.  Where
-    two others meet, such a third meets both; that each of them agrees with it is asked, or follows
-    in the same way: the third contradicts each of them in fewer conditions than they do each other.
+    two others meet, such a third meets both.  That it agrees with each is asked, or follows in the
+    same way: it contradicts each in fewer conditions than they contradict each other.
     """
     yield from (q for q in questions if q.meeting is None)
     meetings = [(q.meeting.law, q) for q in questions if q.meeting]
     for law in dict.fromkeys(law for law, _ in meetings):
         own = [q for of, q in meetings if of == law]
         about = {side: q for q in own if q.meeting for side in q.meeting.sides}
-        taken = tuple(side for side, q in about.items() if not _empty(side, q, solver))
+        taken = tuple(side for side, q in about.items() if not _is_empty(side, q, solver))
         near = frozenset(_neighbours(taken))
         yield from (q for q in own if q.meeting and q.meeting.sides in near)
 
@@ -184,8 +187,8 @@ def _neighbours(taken: tuple[Branch, ...]) -> Iterator[tuple[Branch, Branch]]:
             yield from ((one, other), (other, one))
 
 
-def _empty(branch: Branch, question: Question, solver: Asks) -> bool:
-    """Return whether a branch is shown to be taken nowhere in the domain."""
+def _is_empty(branch: Branch, question: Question, solver: SolverLike) -> bool:
+    """Return whether a branch is shown to be empty in the domain."""
     assert question.meeting is not None
     if any(opposite(condition) in branch.conditions for condition in branch.conditions):
         return True
@@ -195,27 +198,27 @@ def _empty(branch: Branch, question: Question, solver: Asks) -> bool:
 
 
 def jumps(meeting: Meeting, values: Numbers) -> bool:
-    """Return whether the law of two branches certainly jumps at a point, or has no value there."""
+    """Return whether a law certainly jumps where two branches meet, or has no value there."""
     try:
         at = value_of(meeting.law, values)
     except TooCloseError:
         return False
     except (ArithmeticError, ValueError):
         return True
-    return any(_other(side, meeting, at, values) for side in meeting.sides)
+    return any(_other_limit(side, meeting, at, values) for side in meeting.sides)
 
 
-def _other(side: Branch, meeting: Meeting, at: Value, values: Numbers) -> bool:
-    """Return whether a branch reaches a point with another limit than the law's value there."""
+def _other_limit(side: Branch, meeting: Meeting, at: Value, values: Numbers) -> bool:
+    """Return whether a branch reaches a point with a limit other than the law's value there."""
     try:
         apart = differ(value_of(side.value, values), at)
     except TooCloseError:
         return False
     except (ArithmeticError, ValueError):
-        ways = _ways(side, meeting, values)
+        ways = _approaches(side, meeting, values)
         sizes = ([_size(meeting.law, point) for point in way] for way in ways)
         return any(s[0] > 0 and all(b > GROWTH * a for a, b in pairwise(s)) for s in sizes)
-    return apart and any(True for _ in _ways(side, meeting, values))
+    return apart and any(True for _ in _approaches(side, meeting, values))
 
 
 def _size(law: Expr, values: Numbers) -> float:
@@ -225,10 +228,10 @@ def _size(law: Expr, values: Numbers) -> float:
         return 0.0
 
 
-def _ways(side: Branch, meeting: Meeting, values: Numbers) -> Iterator[list[Numbers]]:
-    """Yield points of a branch nearer and nearer to a point, one direction after the other.
+def _approaches(side: Branch, meeting: Meeting, values: Numbers) -> Iterator[list[Numbers]]:
+    """Yield, for each direction in which a branch reaches a point, points of it nearer and nearer.
 
-    Parameters stay where they are: a jump along them is none that a run could see.
+    Parameters are kept: no run crosses a jump along them.
     """
     for way in _directions(tuple(name for name in values if name not in meeting.fixed)):
         points: list[Numbers] = [

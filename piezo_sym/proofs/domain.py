@@ -1,7 +1,7 @@
-"""What has to be shown of a model as a whole: its domain has points, nothing divides by zero.
+"""The obligations on a model's domain and on the divisors of its junction laws.
 
-Input: an `IPHS`.  Output: obligations that conditions of the domain have values and that what the
-junction laws divide by is not zero, and the reason why nothing can be said of an empty domain.
+Input: an `IPHS`.  Output: obligations that conditions of the domain have values and that divisors
+are not zero, and the reason to leave all rows open if the domain has no known point.
 """
 
 from collections.abc import Iterator, Mapping
@@ -17,9 +17,9 @@ from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Neg, names
 from piezo_sym.expressions.tree import replace as put
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.assumptions import Assumptions
-from piezo_sym.proofs.laws import on_branches, valued
+from piezo_sym.proofs.laws import branch_questions, value_questions
 from piezo_sym.proofs.obligations import NEVER, Obligation, Question
-from piezo_sym.proofs.solvers import Asks
+from piezo_sym.proofs.solvers import SolverLike
 from piezo_sym.spec.elements.ports import Body, Coupling
 from piezo_sym.spec.tables import conditions
 
@@ -27,19 +27,19 @@ from piezo_sym.spec.tables import conditions
 MOST_TEXT = 60
 
 
-def defined(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
-    """Yield that each condition of the domain has a value where those before it hold.
+def domain_defined(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
+    """Yield the obligation that each condition has a value where those before it hold.
 
-    Conditions that always have a value come first: all of them have to hold, in whatever order.
+    Conditions that always have a value come first, as the order of conditions is free.
     """
     trees = [condition.tree for condition in conditions(iphs.model)]
     ties = replace(assumptions, where=tuple(c for c in assumptions.where if c.op == "="))
 
     def questions() -> Iterator[Question]:
-        partial = [tree for tree in trees if valued(tree, ties)]
+        partial = [tree for tree in trees if value_questions(tree, ties)]
         known = [tree for tree in trees if tree not in partial]
         for tree in partial:
-            yield from valued(tree, replace(ties, where=(*known, *ties.where)))
+            yield from value_questions(tree, replace(ties, where=(*known, *ties.where)))
             known.append(tree)
 
     statement, latex = "the domain: each condition has a value", r"\mathcal{D}"
@@ -50,18 +50,18 @@ def defined(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
 
 
 def divisors(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
-    """Yield for each expression that the junction laws divide by that it is not zero.
+    """Yield the obligation that each divisor of the junction laws is not zero.
 
-    These are ratios of levers, and what resistive loops bring.
+    Divisors are ratios of levers and determinants of resistive loops.
     """
     words = {port.name: port.ratio for _, port in iphs.circuit.of(Coupling)}
-    slopes = iphs.junction.slopes
-    words |= {str(slope.symbol.name): slope.law for slope in slopes}
+    words |= {str(slope.symbol.name): slope.law for slope in iphs.junction.slopes}
     for divisor in iphs.junction.divisors:
-        yield _divisor(divisor, words, assumptions)
+        yield _nonzero(divisor, words, assumptions)
 
 
-def _divisor(divisor: sp.Expr, words: Mapping[str, Expr], assumptions: Assumptions) -> Obligation:
+def _nonzero(divisor: sp.Expr, words: Mapping[str, Expr], assumptions: Assumptions) -> Obligation:
+    """State that a divisor of the junction laws is not zero."""
     form = coefficient(divisor)
     form = form.arg if isinstance(form, Neg) else form
     text = spell(form)
@@ -70,20 +70,22 @@ def _divisor(divisor: sp.Expr, words: Mapping[str, Expr], assumptions: Assumptio
     made = Obligation("welldef", "", statement, r"\det \ne 0", assumptions.texts)
     law = put(form, words)
     question = assumptions.question(f"{short} != 0", Cmp("!=", law, ZERO))
-    return made.asking(lambda: (*valued(law, assumptions), *on_branches(law, question)), short)
+    return made.asking(
+        lambda: (*value_questions(law, assumptions), *branch_questions(law, question)), short
+    )
 
 
-def not_shown(iphs: IPHS, assumptions: Assumptions, solver: Asks) -> str:
-    """Return what to say of a domain that no point is known to be in; else nothing.
+def why_empty(iphs: IPHS, assumptions: Assumptions, solver: SolverLike) -> str:
+    """Return the reason to leave all open if the domain has no known point, else ''.
 
-    The spec's own values are a point of it; where that is too close to tell, the solver looks for
-    another.  Both are evaluated exactly.
+    The spec's own values should be one; where that is not certain, the solver looks for another.
+    Both are evaluated exactly.
     """
-    if _inside(assumptions, own_values(iphs)):
+    if _all_inside(assumptions, spec_points(iphs)):
         return ""
     question = assumptions.question("the domain is empty", NEVER)
-    answer = solver.ask(replace(question, whole=True).query)
-    if answer.result == "sat" and _inside(assumptions, (answer.model,)):
+    answer = solver.ask(replace(question, keep_all=True).query)
+    if answer.result == "sat" and _all_inside(assumptions, (answer.model,)):
         return ""
     given = ", ".join(assumptions.texts)
     if answer.result == "unsat":
@@ -91,15 +93,15 @@ def not_shown(iphs: IPHS, assumptions: Assumptions, solver: Asks) -> str:
     return f"no point is known to be in the domain: {given}"
 
 
-def _inside(assumptions: Assumptions, points: tuple[Mapping[str, Value], ...]) -> bool:
+def _all_inside(assumptions: Assumptions, points: tuple[Mapping[str, Value], ...]) -> bool:
     """Return whether every point is certainly in the domain."""
-    # what ties a temperature to its entropy holds by its value
+    # equations hold by construction: they give a temperature its value
     conditions = [condition for condition in assumptions.where if condition.op != "="]
     return bool(points) and all(all_hold(conditions, point) for point in points)
 
 
-def own_values(iphs: IPHS) -> tuple[dict[str, Value], ...]:
-    """Return the values of a spec in each lane of its banks; none if one of them has no value."""
+def spec_points(iphs: IPHS) -> tuple[dict[str, Value], ...]:
+    """Return the spec's own values in each lane of its banks; () if one of them has no value."""
     model = iphs.model
     lists = {name: parameter.lanes for name, parameter in model.parameters.items()}
     sizes = [*map(len, lists.values()), *map(len, iphs.starts)]
@@ -114,13 +116,10 @@ def own_values(iphs: IPHS) -> tuple[dict[str, Value], ...]:
                 slot.label: value_of(parts[min(lane, len(parts) - 1)], values)
                 for slot, parts in zip(iphs.system.states, iphs.starts, strict=True)
             }
-            points.append({**values, **dict(_temperatures(iphs, values))})
+            for _, port in iphs.circuit.of(Body):
+                if values.keys() >= {*names(port.law)}:
+                    values[port.temperature] = value_of(port.law, values)
+            points.append(values)
     except (ArithmeticError, ValueError):
         return ()
     return tuple(points)
-
-
-def _temperatures(iphs: IPHS, values: Mapping[str, Value]) -> Iterator[tuple[str, Value]]:
-    for _, port in iphs.circuit.of(Body):
-        if values.keys() >= {*names(port.law)}:
-            yield port.temperature, value_of(port.law, values)

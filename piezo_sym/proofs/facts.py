@@ -1,7 +1,7 @@
-"""What solvers are told about functions: bounds that are true for all real numbers.
+"""Facts on functions for solvers: bounds that are true for all real numbers.
 
 Input: a function, and symbols for its argument and its value.  Output: clauses.  Outside the domain
-of a root or a logarithm each clause holds whatever the value's symbol is.
+of a root or a logarithm a clause holds for every value.
 """
 
 from collections.abc import Iterator
@@ -16,11 +16,9 @@ Clause = tuple[Cmp, ...]
 
 
 def facts_on(function: str, exponent: Fraction | Expr, x: Expr, y: Expr) -> Iterator[Clause]:
-    """Yield bounds on y = f(x) that hold for every real x, each with the function's own domain.
+    """Yield bounds on y = f(x) that hold for every real x: outside its domain f is unrestricted.
 
-    Parameters
-    ----------
-    function : ``exp`` ..., or ``root`` for the power `exponent` of x; ``pow`` has it as a tree.
+    A ``root`` is the power `exponent` of x; the exponent of ``pow`` is a tree.
     """
     if isinstance(exponent, Fraction) and function == "root":  # y**q = x**p defines x**(p/q) >= 0
         undefined = Cmp("<" if exponent > 0 else "<=", x, ZERO)
@@ -36,12 +34,7 @@ def facts_on(function: str, exponent: Fraction | Expr, x: Expr, y: Expr) -> Iter
 def facts_on_two(
     function: str, exponent: Fraction | Expr, one: tuple[Expr, Expr], other: tuple[Expr, Expr]
 ) -> Iterator[Clause]:
-    """Yield what relates the values of one function at two arguments.
-
-    Parameters
-    ----------
-    one, other : each an argument and its value, the exponents being the same.
-    """
+    """Yield clauses that relate two pairs (argument, value) of one function and exponent."""
     (x, y), (a, b) = one, other
     record = RECORDS.get(function)
     rising = record.monotone if record else isinstance(exponent, Fraction) and exponent > 0

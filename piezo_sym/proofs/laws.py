@@ -1,7 +1,7 @@
-"""What has to be shown of each law: welldef, passive, odd (and continuous, in `continuity`).
+"""The obligations on each law: welldef, passive, odd, rate-independent (continuous: `continuity`).
 
-Input: an `IPHS`.  Output: obligations, their questions asked branch by branch.  Laws stand in the
-words of the domain: states and temperatures by their names.
+Input: an `IPHS`.  Output: obligations, their questions asked branch by branch.  Laws are in the
+names of the domain: states and temperatures.
 """
 
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ from piezo_sym.proofs.branches import (
     TooManyBranchesError,
     branches,
     choices,
-    partial,
+    value_conditions,
     with_choices,
 )
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
@@ -52,18 +52,21 @@ def laws_of(iphs: IPHS) -> tuple[Law, ...]:
 
 
 def _energies(iphs: IPHS) -> Iterator[tuple[Placed, Law]]:
-    """Yield the energies that choose, or may lack a value where their slopes have one."""
+    """Yield the energies with branches, or with value conditions that their slopes do not have."""
     stores = tuple(iphs.circuit.of(Storage, Body))
     for energy in iphs.energies:
         placed, _ = stores[energy.rows[0]]
         slopes = {claim for n in energy.rows for claim in _claims(stores[n][1].law)}
         if choices(with_choices(energy.law)) or not slopes.issuperset(_claims(energy.law)):
-            yield placed, Law(placed.element, f"U_{placed.element}", energy.law, found=energy.found)
+            yield (
+                placed,
+                Law(placed.element, f"U_{placed.element}", energy.law, derived=energy.derived),
+            )
 
 
 def _claims(law: Expr) -> Iterator[Cmp]:
-    """Yield what a law needs to have a value, without factors that are numbers."""
-    for claim in partial(law):
+    """Yield the conditions under which a law has a value, without numeric factors."""
+    for claim in value_conditions(law):
         left = claim.left.right if isinstance(claim.left, Mul) else claim.left
         plain = isinstance(claim.left, Mul) and isinstance(claim.left.left, Num)
         if not isinstance(claim.left, Num):
@@ -96,7 +99,7 @@ def _apart(iphs: IPHS, state: str) -> tuple[Expr, ...]:
 
 
 def welldef(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | None:
-    """State that the laws of one element have values everywhere; None if they cannot lack one."""
+    """State that the laws of one element have values everywhere; None if nothing is to be shown."""
     named = " and ".join(dict.fromkeys(law.name for law in laws))
     statement = f"{named}: a real value everywhere"
     element, latex = laws[0].element, r"W_k \in \mathbb{R}"
@@ -104,10 +107,10 @@ def welldef(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | Non
 
     def questions() -> Iterator[Question]:
         for law in laws:
-            yield from (replace(q, found=law.found) for q in valued(law.tree, about))
+            yield from (replace(q, derived=law.derived) for q in value_questions(law.tree, about))
         for written in (written for law in laws for written in law.written):
             order = dict.fromkeys((*about.order, *names(written)))
-            yield from valued(written, replace(about, order=tuple(order)))
+            yield from value_questions(written, replace(about, order=tuple(order)))
 
     made = Obligation("welldef", element, statement, latex, assumptions.texts)
     made = made.asking(questions, laws[0].of_element)
@@ -115,11 +118,11 @@ def welldef(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | Non
     return made if needed else None
 
 
-def valued(law: Expr | Cmp, assumptions: Assumptions) -> tuple[Question, ...]:
+def value_questions(law: Expr | Cmp, assumptions: Assumptions) -> tuple[Question, ...]:
     """Return the questions whether a law, or both sides of a comparison, have a value everywhere.
 
-    Each part is asked about where it is evaluated: under the conditions around it alone; of a table
-    that its knots increase is asked in all of the domain.
+    Each part must have one where it is evaluated: under the conditions around it.  The knots of a
+    table must increase in all of the domain.
 
     Raises
     ------
@@ -130,23 +133,26 @@ def valued(law: Expr | Cmp, assumptions: Assumptions) -> tuple[Question, ...]:
     pieces = branches(tree, assumptions.where)
     found: list[Question] = []
     for order in increasing(law):
-        found += valued(order, assumptions)
+        found += value_questions(order, assumptions)
         found.append(assumptions.question(f"{condition_text(order)} in a table", order))
     for branch in pieces:
         where = assumptions.where
         for part in (*branch.conditions, branch.value):
-            found += parts_valued(part, where, assumptions, law)
-            where = (*where, *partial(part), *((part,) if isinstance(part, Cmp) else ()))
+            found += part_questions(part, where, assumptions, law)
+            where = (*where, *value_conditions(part), *((part,) if isinstance(part, Cmp) else ()))
     if found and len(pieces) > 1:
         found.append(replace(found[0], where=assumptions.where, branch=()).covered(pieces))
     return tuple(dict.fromkeys(found))
 
 
-def parts_valued(
+def part_questions(
     node: Node, where: tuple[Cmp, ...], assumptions: Assumptions, law: Expr | Cmp | None = None
 ) -> Iterator[Question]:
-    """Yield the questions whether the parts of a smooth tree have values, inner parts first."""
-    for claim in partial(node):
+    """Yield the questions whether the parts of a smooth tree have values, inner parts first.
+
+    The conditions of `where` beyond the assumptions are those of a branch.
+    """
+    for claim in value_conditions(node):
         label = f"{spell(claim.left)} {claim.op} 0"
         branch = where[len(assumptions.where) :]
         yield Question(label, assumptions.order, where, claim, claim, branch, law=law)
@@ -154,7 +160,7 @@ def parts_valued(
 
 
 def passive(law: Law, assumptions: Assumptions) -> Obligation:
-    """State that a dissipative law takes power in: its output times its letter is not negative."""
+    """State that a dissipative law takes power in: output times letter >= 0."""
     power = f"{law.name}*{law.letter}"
     assumptions = assumptions.about(law)
     made = Obligation(
@@ -168,16 +174,16 @@ def passive(law: Law, assumptions: Assumptions) -> Obligation:
     )
     claim = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
     question = assumptions.question(f"{power} >= 0", claim)
-    return replace(made, questions=on_branches(law.tree, question, law.letter))
+    return replace(made, questions=branch_questions(law.tree, question, law.letter))
 
 
-def on_branches(law: Expr, question: Question, letter: str = "") -> tuple[Question, ...]:
-    """Return a question on each branch of a law, and whether they cover all points.
+def branch_questions(law: Expr, question: Question, letter: str = "") -> tuple[Question, ...]:
+    """Return a question on each branch of a law, and whether the branches cover all points.
 
-    The claim compares the law, or its product with `letter`, with zero; where there are too many
-    branches it stays as it is.
+    The claim compares the law, or its product with `letter`, with zero; with too many branches it
+    stays as it is.
     """
-    plain = question.claim.op in {">=", "="}  # a branch that is zero has nothing to show
+    plain = question.claim.op in {">=", "="}  # holds on a branch that is zero
     try:
         pieces = branches(law, question.where)
     except TooManyBranchesError:
@@ -188,9 +194,7 @@ def on_branches(law: Expr, question: Question, letter: str = "") -> tuple[Questi
             label=f"{question.label}{_under(branch.conditions)}",
             where=(*question.where, *branch.path),
             claim=Cmp(
-                question.claim.op,
-                mul(branch.value, Sym(letter)) if letter else branch.value,
-                ZERO,
+                question.claim.op, mul(branch.value, Sym(letter)) if letter else branch.value, ZERO
             ),
             branch=branch.path,
         )
@@ -210,7 +214,8 @@ def conducts(law: Law, assumptions: Assumptions) -> Obligation:
         "passive", law.element, statement, r"\lambda \ge 0", assumptions.texts, sign=sign
     )
     return made.asking(
-        lambda: (*valued(law.tree, assumptions), *on_branches(law.tree, question)), law.of_element
+        lambda: (*value_questions(law.tree, assumptions), *branch_questions(law.tree, question)),
+        law.of_element,
     )
 
 
@@ -229,7 +234,7 @@ def odd(law: Law, assumptions: Assumptions) -> Obligation:
     )
     try:
         turned = reflected(law.tree, law.letter)
-        twice = reflected(turned, law.letter)  # signs then stand alike in both
+        twice = reflected(turned, law.letter)  # the law, its signs placed as in `turned`
         total = ZERO if twice == neg(turned) else add(twice, turned)
     except ZeroDivisionError:
         return replace(made, open_because=f"{law.of_element} divides by zero")
@@ -238,16 +243,16 @@ def odd(law: Law, assumptions: Assumptions) -> Obligation:
     mirror = substituted(law.tree, {law.letter: neg(Sym(law.letter))})
 
     def questions() -> Iterator[Question]:
-        if law.ties:  # the mirrored law has values, too: `welldef` is about those of the letter
-            yield from valued(mirror, assumptions)
-        branches(total, assumptions.where)  # or there are too many
-        yield from on_branches(total, question) if total != ZERO else ()
+        if law.ties:  # then `welldef` is about some values of the letter, not about their mirrors
+            yield from value_questions(mirror, assumptions)
+        branches(total, assumptions.where)  # raises if there are too many
+        yield from branch_questions(total, question) if total != ZERO else ()
 
     return made.asking(questions, law.of_element)
 
 
 def rate_independent(law: Law, assumptions: Assumptions) -> Obligation:
-    """State that a slip goes with its rate alone, c times as fast where the rate is c times it."""
+    """State that a slip is homogeneous of degree 1 in the rate that drives it."""
     assumptions, c = assumptions.about(law), Sym(fresh("c", assumptions.order))
     faster = substituted(law.tree, {law.rate: mul(c, Sym(law.rate))})
     slip, other = f"{law.name}({law.letter}", mul(c, law.tree)
@@ -264,7 +269,7 @@ def rate_independent(law: Law, assumptions: Assumptions) -> Obligation:
     about = replace(assumptions, order=(*assumptions.order, c.name)).given(Cmp(">", c, ZERO))
     difference = add(faster, neg(other))
     question = about.question(made.statement, Cmp("=", difference, ZERO), Cmp("=", faster, other))
-    return made.asking(lambda: on_branches(difference, question), law.of_element)
+    return made.asking(lambda: branch_questions(difference, question), law.of_element)
 
 
 def _under(where: tuple[Cmp, ...]) -> str:

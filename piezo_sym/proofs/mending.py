@@ -1,8 +1,7 @@
-"""The condition of [domain] under which a law that is refuted takes power in.
+"""The condition for [domain] under which a refuted law takes power in.
 
-Input: the law of a refuted row.  Output: the condition as text, or nothing.  A law that is c times
-what takes power in does so where c >= 0; of c, factors that the domain keeps from being negative
-are left out.
+Input: the law of a refuted row.  Output: the condition as text, or ''.  A law c*f, where f takes
+power in, does so where c >= 0; factors of c that the domain keeps from being negative are left out.
 """
 
 from collections.abc import Callable, Iterator
@@ -13,17 +12,14 @@ from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Mul, Neg, name
 from piezo_sym.network import slope_of
 from piezo_sym.spec.tables import condition_text
 
-#: Whether an expression times another, or alone where that is 1, is shown not to be negative.
+#: Whether law*letter, or a law without letter, is shown to be >= 0 in the domain.
 Shown = Callable[[Expr, str], bool]
 
 
 def mending(law: Expr, letter: str, shown: Shown) -> str:
-    """Return the condition that makes a law have the sign of its letter; without one, be >= 0.
+    """Return the condition under which a law has the sign of its letter, or '' if none is found.
 
-    Parameters
-    ----------
-    law, letter : of a dissipative law; of a conductance the letter is empty.
-    shown : whether the domain has a law times a letter, or alone, be not negative.
+    A conductance has the letter '' and must be >= 0.
     """
     slope = slope_of(law, letter) if letter else None
     factors = list(_factors(law if slope is None else slope))

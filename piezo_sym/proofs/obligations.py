@@ -1,8 +1,8 @@
-"""What has to be shown of a model, as data.
+"""The types of what has to be shown of a model.
 
-Input: nothing; these are the types.  Output: `Obligation` records that `balances`, `bodies`,
-`laws`, `continuity` and `domain` state and `prove` decides.  An obligation holds if its residuals
-are zero, its questions are answered with yes, and the obligations it rests on hold.
+`balances`, `bodies`, `laws`, `continuity` and `domain` state `Obligation` records, `prove` decides
+them.  An obligation holds if its residuals are zero, the claims of its questions follow, and the
+obligations it rests on hold.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ from piezo_sym.proofs.binding import binding
 from piezo_sym.proofs.branches import (
     Branch,
     TooManyBranchesError,
-    bends,
     branches,
     cover,
+    has_kinks,
     parts,
     settled,
 )
 from piezo_sym.proofs.query import Query, query
 from piezo_sym.proofs.rational import cleared, implied, parts_of
 
-#: A claim that holds nowhere: it follows only where nothing is.
+#: A claim that holds nowhere, and so follows only from conditions that no point satisfies.
 NEVER = Cmp("<", ONE, ZERO)
 
 
 @final
 @dataclass(frozen=True)
 class Meeting:
-    """Two branches that must agree where they meet; `fixed` names do not change in a run."""
+    """Two branches that must agree where they meet; `fixed` names are constant in a run."""
 
     law: Expr
     sides: tuple[Branch, Branch]
@@ -52,17 +52,17 @@ class Question:
     ----------
     label : the claim in words.
     order : names, in the order in which a witness should be simple.
-    where : what is assumed; comparisons may have kinks and functions.
+    where : the assumptions; they may have kinks and functions.
     claim : what should follow, as a rule on one branch of a law.
-    original : the same on the law as the spec has it; a witness is checked on this.
-    branch : the part of `where` that says which branch it is.
-    meeting : for a question on the border of two branches, these; a witness must show a jump.
-    law : for a question whether a law has a value, that law; at a witness it must have none.
-    whole : whether all that is assumed goes into the query, as a counterexample needs; a proof
-        needs what binds the names of the claim.
+    original : the claim on the law as the spec has it, on which a witness is checked.
+    branch : those of the assumptions that select the branch.
+    meeting : of a question on the border of two branches: these; a witness must show a jump.
+    law : of a question whether a law has a value: that law; at a witness it must have none.
+    keep_all : whether all assumptions go into the query, as a counterexample needs; a proof needs
+        those that bind the names of the claim.
     split : whether the claim is asked on each of its branches.
-    witness : whether numbers that break the claim are wanted, as those of a counterexample are.
-    found : whether it is about an energy that no spec gives: what breaks that refutes no spec.
+    witness : whether numbers that break the claim are wanted.
+    derived : whether it is about an integrated energy; breaking that refutes no spec.
     """
 
     label: str
@@ -73,19 +73,19 @@ class Question:
     branch: tuple[Cmp, ...] = ()
     meeting: Meeting | None = None
     law: Expr | Cmp | None = None
-    whole: bool = False
+    keep_all: bool = False
     split: bool = True
     witness: bool = False
-    found: bool = False
+    derived: bool = False
 
     def __hash__(self) -> int:
-        """Return a hash without the assumptions, which questions of a model have in common."""
+        """Return a hash without the assumptions, which questions of a model share."""
         return hash((self.label, self.claim, self.original, self.branch))
 
     @cached_property
     def kept(self) -> tuple[Cmp, ...]:
-        """What of `where` goes into the query."""
-        return self.where if self.whole else binding(self.where, frozenset(self._about()))
+        """The assumptions that go into the query."""
+        return self.where if self.keep_all else binding(self.where, frozenset(self._about()))
 
     @cached_property
     def words(self) -> frozenset[str]:
@@ -114,14 +114,14 @@ class Question:
             (*clauses, *known.facts(signed)),
             cleared(plain(claim)),
             about=self.words,
-            witness=self.witness or self.whole,
+            witness=self.witness or self.keep_all,
         )
 
     def smooth(self) -> tuple[Question, ...]:
-        """Return the question, or if its claim has kinks, the same on each branch of it.
+        """Return the question on each smooth branch of its claim.
 
-        Where there are several branches, one more question says that they cover all points; where
-        there are too many, the claim stays as it is.
+        With several branches, one more question asks whether they cover all points; with too many,
+        the claim stays as it is.
         """
         if not self.split:
             return (self,)
@@ -151,35 +151,35 @@ class Question:
         return replace(plain, label=label, claim=claim, original=claim)
 
     def _about(self) -> Iterator[str]:
-        """Yield the names that a claim or a witness needs: of the law, and of where it is."""
+        """Yield the names that the claim, or a witness, is about."""
         for condition in (self.claim, self.original, *self.branch):
             yield from names(condition)
         if self.meeting:
             yield from names(self.meeting.law)
-        if self.law and self.whole:
+        if self.law and self.keep_all:
             yield from names(self.law)
 
 
 @final
 @dataclass(frozen=True)
 class Residual:
-    """An expression that a property says is zero, and the name of its place.
+    """An expression that must be zero, and its name.
 
     Attributes
     ----------
-    empty : questions whether branches are taken nowhere; on all others it is zero.
-    found : whether it is about an energy that no spec gives.
+    empty : questions whether certain branches are empty; on all others it is zero.
+    derived : whether it is about an integrated energy.
     """
 
     place: str
     expr: sp.Expr
     empty: tuple[Question, ...] = ()
-    found: bool = False
+    derived: bool = False
 
 
 def _settled(condition: Cmp, known: tuple[Cmp, ...]) -> Cmp:
-    """Return a comparison with choices for its kinks; other comparisons decide some of them."""
-    if not bends(condition):
+    """Return a comparison with its kinks as choices, some decided by the other `known` ones."""
+    if not has_kinks(condition):
         return condition
     others = tuple(other for other in known if other != condition)
     left, right = (settled(side, others) for side in (condition.left, condition.right))
@@ -187,7 +187,7 @@ def _settled(condition: Cmp, known: tuple[Cmp, ...]) -> Cmp:
 
 
 def _signed(condition: Cmp) -> str:
-    """Return the name that a comparison says is not zero, or nothing."""
+    """Return the name that a comparison keeps from zero, or ''."""
     match condition:
         case Cmp("<" | ">", Sym(name), Num(value)) if value == 0:
             return name
@@ -197,12 +197,12 @@ def _signed(condition: Cmp) -> str:
 @final
 @dataclass(frozen=True)
 class SignOf:
-    """The sign of a law times its letter, for methods that look at the law as a whole.
+    """The claim law*letter >= 0, for methods that treat the law as a whole.
 
     Attributes
     ----------
-    letter : empty for a conductance, which must not be negative itself.
-    where : what is assumed at every point: the domain, and what ties names; no branch's conditions.
+    letter : empty for a conductance: the claim is then law >= 0.
+    where : the assumptions at every point: the domain and ties of names, but no branch.
     """
 
     law: Expr
@@ -222,14 +222,14 @@ class Obligation:
     statement, latex : the property, in words and as mathematics.
     assumptions : the comparisons of the domain that it is stated under, as text.
     residuals : must be zero.
-    questions : must be answered with yes.
+    questions : their claims must follow.
     rests_on : other obligations, as (id, element), that must hold.
-    sign : the law behind the questions, where it is one law's sign.
-    letter : a letter whose simple values are tried where questions are left open.
+    sign : the law whose sign the questions are about, if they are.
+    letter : a letter of which simple values are tried where questions are left open.
     required : whether `generate` insists on it; else it is information.
-    loose : a letter that the domain may bound by a drive that is not written out; what its value
-        refutes is then OPEN.
-    open_because : why nothing could be asked, where a law is beyond what is looked at.
+    loose : a letter that the domain may bound through a drive that is not written out: numbers for
+        it refute nothing.
+    open_because : why no questions could be asked.
     """
 
     id: str
@@ -258,7 +258,7 @@ class Obligation:
         )
 
     def asking(self, questions: Callable[[], Iterable[Question]], law: str) -> Obligation:
-        """Return the obligation with questions, or left open where `law` has too many branches."""
+        """Return the obligation with questions, or left open if `law` has too many branches."""
         try:
             return replace(self, questions=_each_once(questions()))
         except TooManyBranchesError as error:

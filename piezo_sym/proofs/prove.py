@@ -1,8 +1,8 @@
 """Obligations to verdicts: the one place where something becomes PROVED.
 
-Input: an `Obligation`, and the verdicts on what it rests on.  Output: a `Row`.  PROVED needs every
-residual zero, every question answered with `unsat`, and everything it rests on PROVED.  REFUTED
-needs a witness that was evaluated exactly in the law itself.  All else is OPEN, with the reason.
+Input: an `Obligation`, and the rows it rests on.  Output: a `Row`.  PROVED needs every residual
+zero, every question answered with `unsat`, and every row it rests on PROVED.  REFUTED needs a
+witness that was evaluated exactly in the law itself.  All else is OPEN, with the reason.
 """
 
 from collections.abc import Iterable, Mapping
@@ -16,36 +16,36 @@ from piezo_sym.expressions.exact_eval import TooCloseError, all_hold, value_of
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym, names
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.asked import Asked, tried
-from piezo_sym.proofs.continuity import jumps, needed
-from piezo_sym.proofs.domain import own_values
-from piezo_sym.proofs.laws import on_branches
+from piezo_sym.proofs.asked import Domain, simple_counterexample
+from piezo_sym.proofs.continuity import jumps, neighbour_questions
+from piezo_sym.proofs.domain import spec_points
+from piezo_sym.proofs.laws import branch_questions
 from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
-from piezo_sym.proofs.solvers import Answer, Asks, opinions
+from piezo_sym.proofs.solvers import Answer, SolverLike, opinions
 from piezo_sym.spec.tables import condition_text
 
 #: Size of banks in a refutation by algebra: with one lane, coupling between lanes would not show.
 LANES = 2
-TRIES = (1, 2, 3)
-
+#: First values that the symbols of a residual are given.
+STARTS = (1, 2, 3)
 LOOSE = "the domain may bound what drives the element, in a way that is not looked at"
 #: Rows whose questions may be about parameters and inputs alone.
 DECLARED = frozenset({"welldef", "exergy", "environment"})
-#: What is said of an energy that was found for a law, and is not shown to be good.
+#: The remedy where an integrated energy is not shown to belong to its law.
 GIVE = "the energy found for the law is not shown to be one: give it, energy = '...'"
-#: Once so many questions of an obligation are open, the rest is not asked.
+#: Open questions of an obligation after which no more are asked.
 MOST_OPEN = 4
 
-Found = tuple[Verdict, Mapping[str, str] | None, str]
+Finding = tuple[Verdict, Mapping[str, str] | None, str]
 Decided = tuple[Verdict, Mapping[str, str] | None, str, str, tuple[Case, ...]]
 
 
 def prove(
-    obligation: Obligation, iphs: IPHS, before: Iterable[Row] = (), solver: Asks | None = None
+    obligation: Obligation, iphs: IPHS, before: Iterable[Row] = (), solver: SolverLike | None = None
 ) -> Row:
     """Return the verdict on one obligation.
 
@@ -53,22 +53,21 @@ def prove(
     ----------
     obligation : what to show; from `obligations`.
     iphs : the system it is about.
-    before : the verdicts so far, with those of what it rests on; without them it stays open.
-    solver : for its questions; z3, and cvc5 where z3 does not know, if none is given.
+    before : the rows so far; the obligation stays open if one it rests on is not among them.
+    solver : for its questions; by default z3, and cvc5 where z3 does not know.
     """
-    asked = solver or opinions()
-    known = tuple(before)
-    decided = _decide(obligation, iphs, known, asked)
-    verdict, witness, reason, method, certificate = decided
+    solver, known = solver or opinions(), tuple(before)
+    verdict, witness, reason, method, certificate = _decide(obligation, iphs, known, solver)
     if verdict is Verdict.REFUTED and obligation.loose in (witness or {}):
         verdict, witness, reason = Verdict.OPEN, None, LOOSE
-    if verdict is Verdict.REFUTED and obligation.id == "continuous":  # beside the edge, too
+    # a jump is shown by values beside the edge, which must exist
+    if verdict is Verdict.REFUTED and obligation.id == "continuous":
         values = {(row.id, row.element) for row in known} & {("welldef", obligation.element)}
-        verdict, witness, reason = _not_proved(values, known) or (verdict, witness, reason)
+        verdict, witness, reason = _unproved_premise(values, known) or (verdict, witness, reason)
     if verdict is Verdict.REFUTED and obligation.sign:
-        reason += _mended(obligation.sign, obligation.questions, asked)
+        reason += _mending_condition(obligation.sign, obligation.questions, solver)
     if verdict is Verdict.REFUTED and obligation.id in DECLARED:
-        reason += _declared(obligation.questions, iphs, asked)
+        reason += _parameter_conditions(obligation.questions, iphs, solver)
     return Row(
         obligation.id,
         obligation.element,
@@ -82,35 +81,37 @@ def prove(
     )
 
 
-def _decide(obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: Asks) -> Decided:
+def _decide(
+    obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: SolverLike
+) -> Decided:
     """Return the verdict with its witness and reason, the method, and the certificate."""
     if obligation.open_because:
         return Verdict.OPEN, None, obligation.open_because, "branches", ()
     for residual in obligation.residuals:
         if residual.empty and all(solver.ask(q.query).result == "unsat" for q in residual.empty):
             continue
-        failed = _vanishes(residual, iphs)
-        if failed and residual.found:
+        failed = _residual_failure(residual, iphs)
+        if failed and residual.derived:
             return Verdict.OPEN, None, f"{failed[2]}; {GIVE}", "algebra", ()
         if failed:
             return *failed, "algebra", ()
     method, certificate = "branches" if obligation.questions else "algebra", tuple[Case, ...]()
-    failed = _asked(obligation.questions, solver)
+    failed = _first_failure(obligation.questions, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.sign and obligation.sign.letter:
         method = "intervals"
-        failed, certificate = _as_a_whole(obligation, obligation.sign, failed, solver)
+        failed, certificate = _by_intervals(obligation, obligation.sign, failed, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
-    proved: Found = (Verdict.PROVED, None, "")
-    failed = failed or _not_proved(obligation.rests_on, before)
+    proved: Finding = (Verdict.PROVED, None, "")
+    failed = failed or _unproved_premise(obligation.rests_on, before)
     return *(failed or proved), method, () if failed else certificate
 
 
-def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
-    """Return the first question that is refuted, else the first that is open, else None."""
-    left: list[Found] = []
-    for question in needed(tuple(questions), solver):
-        found = _answered(question, solver)
+def _first_failure(questions: Iterable[Question], solver: SolverLike) -> Finding | None:
+    """Return the first refutation of a question, else the first open finding, else None."""
+    left: list[Finding] = []
+    for question in neighbour_questions(tuple(questions), solver):
+        found = _failure(question, solver)
         if found and found[0] is Verdict.REFUTED:
             return found
         left += [found] if found else []
@@ -119,10 +120,10 @@ def _asked(questions: Iterable[Question], solver: Asks) -> Found | None:
     return left[0] if left else None
 
 
-def _as_a_whole(
-    obligation: Obligation, sign: SignOf, still_open: Found, solver: Asks
-) -> tuple[Found | None, tuple[Case, ...]]:
-    """Return how a law fails to be passive, or its certificate if `sign_analysis` proves it."""
+def _by_intervals(
+    obligation: Obligation, sign: SignOf, still_open: Finding, solver: SolverLike
+) -> tuple[Finding | None, tuple[Case, ...]]:
+    """Return the certificate of a law that `sign_analysis` proves passive, else the finding."""
     question = obligation.questions[0]
     found = whole_sign(sign, question.order, solver)
     if found is None:
@@ -130,21 +131,23 @@ def _as_a_whole(
     if found.verdict is Verdict.PROVED:
         return None, found.certificate
     if found.numbers is not None:
-        return _broken(question, found.numbers), ()
+        return _refutation(question, found.numbers), ()
     return (Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
 
 
-def _by_numbers(obligation: Obligation, solver: Asks) -> Found | None:
+def _by_numbers(obligation: Obligation, solver: SolverLike) -> Finding | None:
     """Return the refutation of a claim by simple numbers, or None."""
     question = obligation.questions[0]
-    domain = question.where[: len(question.where) - len(question.branch)]
-    asked = Asked(domain, question.order, solver)
-    numbers = tried(question.original, obligation.letter, asked)
-    return _broken(question, numbers) if numbers else None
+    conditions = question.where[: len(question.where) - len(question.branch)]
+    domain = Domain(conditions, question.order, solver)
+    numbers = simple_counterexample(question.original, obligation.letter, domain)
+    return _refutation(question, numbers) if numbers else None
 
 
-def _not_proved(premises: Iterable[tuple[str, str]], before: tuple[Row, ...]) -> Found | None:
-    """Return the first of some obligations that is not proved."""
+def _unproved_premise(
+    premises: Iterable[tuple[str, str]], before: tuple[Row, ...]
+) -> Finding | None:
+    """Return the finding on the first premise that is not proved, or None."""
     for premise in premises:
         name = f"{premise[0]} of {premise[1]}" if premise[1] else premise[0]
         verdicts = [row.verdict for row in before if (row.id, row.element) == premise]
@@ -156,12 +159,12 @@ def _not_proved(premises: Iterable[tuple[str, str]], before: tuple[Row, ...]) ->
     return None
 
 
-def _vanishes(residual: Residual, iphs: IPHS) -> Found | None:
-    """Return None if a residual is zero, else how it fails."""
+def _residual_failure(residual: Residual, iphs: IPHS) -> Finding | None:
+    """Return None if a residual is zero, else the finding."""
     value = sp.expand(residual.expr)
     if value == 0:
         return None
-    witness = _nonzero(iphs, value)
+    witness = _nonzero_point(iphs, value)
     if witness is None:
         reason = f"{residual.place} = {value} was not shown to be zero"
         return Verdict.OPEN, None, reason
@@ -169,51 +172,51 @@ def _vanishes(residual: Residual, iphs: IPHS) -> Found | None:
     return Verdict.REFUTED, numbers, f"{residual.place} = {value}, which is {at}"
 
 
-def _nonzero(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None:
-    """Return exact numbers at which `expr` is not zero, and its value there."""
+def _nonzero_point(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None:
+    """Return exact numbers at which `expr` is not zero, and its value there, or None."""
     lanes = iphs.system.E.lanes
     counts = dict.fromkeys(lanes.counts, LANES)
     written = lanes.expand(expr, counts)
     symbols = sorted(written.free_symbols, key=lambda symbol: str(symbol.name))
     sizes = {symbol.name: str(counts[bank]) for bank, symbol in lanes.counts.items()}
-    for start in TRIES:
-        values = {s: sp.Integer(start + n % len(TRIES)) for n, s in enumerate(symbols)}
+    for start in STARTS:
+        values = {s: sp.Integer(start + n % len(STARTS)) for n, s in enumerate(symbols)}
         try:
             value = written.xreplace(values)
-        except TypeError:  # it compares what has no real value there
+        except TypeError:  # a side of a comparison has no real value there
             continue
         if value.is_number and value.is_zero is False:
             return {**sizes, **{s.name: str(v) for s, v in values.items()}}, value
     return None
 
 
-def _answered(question: Question, solver: Asks) -> Found | None:
-    """Return None if the claim follows, else how it fails or why it is open."""
+def _failure(question: Question, solver: SolverLike) -> Finding | None:
+    """Return None if the claim follows, else the finding."""
     answer = solver.ask(question.query)
     if answer.result == "unsat":
         return None
     if answer.result == "sat":
         shown = question.query.variables
-        answer = solver.ask(replace(question, whole=True).query)
+        answer = solver.ask(replace(question, keep_all=True).query)
         if answer.result == "unsat":
             return None
         if answer.result == "sat":
-            found = _refuted(question, answer, shown)
-            return (Verdict.OPEN, None, f"{found[2]}; {GIVE}") if question.found else found
+            found = _checked_model(question, answer, shown)
+            return (Verdict.OPEN, None, f"{found[2]}; {GIVE}") if question.derived else found
     return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
 
 
-def _refuted(question: Question, answer: Answer, shown: tuple[str, ...]) -> Found:
+def _checked_model(question: Question, answer: Answer, shown: tuple[str, ...]) -> Finding:
     """Return REFUTED if the model breaks the claim in the law itself, else OPEN."""
     values = {name: value for name, value in answer.model.items() if name in question.order}
     if not (all_hold(question.where, values) and _is_broken(question, values)):
         reason = f"{question.label}: bounds on the functions in it do not decide it"
         return Verdict.OPEN, None, reason
-    return _broken(question, {name: value for name, value in values.items() if name in shown})
+    return _refutation(question, {name: value for name, value in values.items() if name in shown})
 
 
 def _is_broken(question: Question, values: Mapping[str, Fraction]) -> bool:
-    """Return whether a claim on a law certainly fails at a point of the domain."""
+    """Return whether a claim certainly fails at a point of the domain."""
     if question.meeting:
         return jumps(question.meeting, values)
     if question.law is not None:
@@ -233,8 +236,8 @@ def _has_no_value(law: Expr | Cmp, values: Mapping[str, Fraction]) -> bool:
     return False
 
 
-def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
-    """Return the refutation of a claim by numbers that break it."""
+def _refutation(question: Question, values: Mapping[str, Fraction]) -> Finding:
+    """Return the finding that numbers break a claim."""
     left, right = question.original.left, question.original.right
     reason = f"{spell(left)} = {_value(left, values)}"
     if isinstance(question.law, Cmp):
@@ -245,35 +248,35 @@ def _broken(question: Question, values: Mapping[str, Fraction]) -> Found:
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 
-def _mended(sign: SignOf, questions: tuple[Question, ...], solver: Asks) -> str:
-    """Return the condition that mends a refuted law, as the end of a reason."""
+def _mending_condition(sign: SignOf, questions: tuple[Question, ...], solver: SolverLike) -> str:
+    """Return the condition under which a refuted law is passive, as the end of a reason."""
 
     def shown(law: Expr, letter: str) -> bool:
         claim = Cmp(">=", mul(law, Sym(letter)) if letter else law, ZERO)
-        asked = Question("", questions[0].order, sign.where, claim, claim)
-        return _asked(on_branches(law, asked, letter), solver) is None
+        question = Question("", questions[0].order, sign.where, claim, claim)
+        return _first_failure(branch_questions(law, question, letter), solver) is None
 
     condition = mending(sign.law, sign.letter, shown)
     return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
 
 
-def _declared(questions: tuple[Question, ...], iphs: IPHS, solver: Asks) -> str:
-    """Return what parameters and inputs have to keep, as n > 0, for all questions to be answered.
+def _parameter_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: SolverLike) -> str:
+    """Return conditions on parameters and inputs, such as n > 0, under which all claims hold.
 
-    Values of the spec keep it, too; of what must not be zero that says the sign.
+    The spec's own values satisfy them; they decide between > 0 and < 0 for a claim ``!= 0``.
     """
     known = iphs.model.parameters.keys() | iphs.model.inputs.keys()
-    broken = [q.original for q in questions if _answered(q, solver)]
+    broken = [q.original for q in questions if _failure(q, solver)]
     if not all(names(claim.left) and known >= {*names(claim.left)} for claim in broken):
         return ""
-    points = own_values(iphs)
+    points = spec_points(iphs)
 
     def kept(conditions: tuple[Cmp, ...]) -> bool:
         return all(all_hold(conditions, point) for point in points)
 
     def mended(conditions: tuple[Cmp, ...]) -> bool:
         within = (replace(q, where=(*conditions, *q.where)) for q in questions)
-        return kept(conditions) and _asked(within, solver) is None
+        return kept(conditions) and _first_failure(within, solver) is None
 
     found: tuple[Cmp, ...] = ()
     for claim in broken:
@@ -282,7 +285,7 @@ def _declared(questions: tuple[Question, ...], iphs: IPHS, solver: Asks) -> str:
         found += tuple(way for way in ways if kept((way,)) and way not in found)[:1]
     if not found or not mended(found):
         return ""
-    for claim in found:  # what others imply is left out
+    for claim in found:  # leave out conditions that the others imply
         rest = tuple(c for c in found if c != claim)
         found = rest if rest and mended(rest) else found
     said, many = " and ".join(f"'{condition_text(claim)}'" for claim in found), len(found) > 1

@@ -1,8 +1,8 @@
-"""A system as text that a second program can check: rates, U, y, and what each name stands for.
+"""A system as text that a second program can check: rates, U, y, and the law of each name.
 
 Input: an `IPHS`.  Output: the "system" part of ``proofs.json``, in the law grammar of specs and
-``sum(bank, law)``.  Names of a bank stand without index: they are those of the row's own lane, or
-of the lane that the enclosing sum runs over.
+``sum(bank, law)``.  Names of a bank have no index: they are of the row's own lane, or of the lane
+that the enclosing sum runs over.
 """
 
 from __future__ import annotations
@@ -18,18 +18,7 @@ from piezo_sym.algebra.symbols import Raised
 from piezo_sym.expressions.calculus import add, div, mul, power
 from piezo_sym.expressions.functions import FUNCTIONS as WRITTEN
 from piezo_sym.expressions.text import ATOM, SPEC, write
-from piezo_sym.expressions.tree import (
-    ONE,
-    Call,
-    Cmp,
-    Expr,
-    If,
-    LaneSum,
-    Mul,
-    Num,
-    Sym,
-    replace,
-)
+from piezo_sym.expressions.tree import ONE, Call, Cmp, Expr, If, LaneSum, Mul, Num, Sym, replace
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, DissipativePort, Storage
@@ -68,7 +57,7 @@ def published(iphs: IPHS) -> dict[str, object]:
 
 
 def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None]]]:
-    """Yield each name of a system: whose it is, what it is, and its law."""
+    """Yield each name of a system with its element, role, bank and law."""
 
     def entry(name: str, element: str, role: str, law: Expr) -> tuple[str, dict[str, str | None]]:
         bank = iphs.symbols.banks.get(iphs.symbols[name]) if name in iphs.symbols.symbols else None
@@ -102,7 +91,7 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
 
 
 class _Trees:
-    """SymPy expressions to trees; terms and factors are sorted by their text, not as SymPy does."""
+    """SymPy expressions to trees, terms and factors sorted by their text."""
 
     def __init__(self, iphs: IPHS) -> None:
         self.names: Mapping[sp.Symbol, str] = {s: n for n, s in iphs.symbols.symbols.items()}

@@ -1,4 +1,4 @@
-"""Questions to solvers, and their text: what is assumed, and what should follow.
+"""Queries to solvers, and their text.
 
 Input: comparisons of polynomials, which may have choices.  Output: a `Query`, and its text in
 SMT-LIB 2, which z3 and cvc5 both read.  A query asserts the opposite of its claim: `unsat` proves
@@ -13,7 +13,7 @@ from typing import final
 from piezo_sym.expressions.tree import Add, Cmp, Expr, If, Mul, Neg, Num, Pow, Sym, names
 from piezo_sym.proofs.facts import Clause
 
-#: Stands before each name of a model in a query: no word of SMT-LIB or of a solver begins with it.
+#: Prefix of each name of a model in a query: no word of SMT-LIB or of a solver begins with it.
 MARK = "?"
 
 
@@ -26,7 +26,7 @@ class Query:
     ----------
     label : in words, such as ``V_hysteron*i >= 0 where i > i_0``.
     variables : names, in the order in which a witness should be simple.
-    given : clauses, of each at least one comparison holds.
+    given : clauses; in each at least one comparison holds.
     claim : the comparison that should follow.
     witness : whether numbers that break the claim are wanted; they cost more than the answer.
     """
@@ -106,5 +106,5 @@ def _number(value: Fraction) -> str:
 
 
 def marked(name: str) -> str:
-    """Return a name as it stands in a query, where it means nothing to a solver."""
+    """Return a name with the prefix that it has in a query."""
     return MARK + name

@@ -1,18 +1,18 @@
-"""Laws as quotients of polynomials and choices: what solvers of real arithmetic understand.
+"""Laws as polynomials and choices, which solvers of real arithmetic understand.
 
-Input: trees without kinked functions; choices stay.  Output: the same trees with every function and
-root replaced by a symbol of its own (`Part`), what is known of that symbol (`facts`), and quotients
-without division: cleared (`Ratio`), or by a symbol each where the tree has choices.
+Input: trees without kinked functions; choices stay.  Output: the same trees with a symbol for every
+function and root (`Part`), facts on these symbols, and quotients without division: cleared
+(`Ratio`), or with a symbol each where the tree has choices.
 
-A fact is a clause that is true for all real numbers: the function's own domain implies it, never a
-branch on which the function happens to stand.  Where a function is not defined its symbol is free.
-A claim that follows from facts is a theorem; a counterexample to them has to be confirmed on the
-law itself.
+A fact is a clause that is true for all real numbers: its premise is the function's own domain, not
+the branch in which the function stands.  Outside its domain a function's symbol is free.  A claim
+that follows from facts is a theorem; a counterexample has to be confirmed on the law itself.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 from itertools import combinations
 from typing import final
 
@@ -39,7 +39,7 @@ from piezo_sym.expressions.tree import (
 from piezo_sym.proofs.facts import Clause, facts_on, facts_on_two
 from piezo_sym.spec.names import fresh
 
-#: If there are more functions than these, pairs of them are not related.
+#: With more functions than these, no facts relate pairs of them.
 MOST_ALIKE = 8
 
 
@@ -55,14 +55,15 @@ class Ratio:
 @final
 @dataclass(frozen=True)
 class Part:
-    """A function, root or quotient in a law, by a name of its own.
+    """A function, root or quotient in a law, with a symbol of its own.
 
     Attributes
     ----------
-    name, argument : symbols; the argument's value is `value`, free of functions.
+    name, argument : of its symbol, and the argument's symbol, which equals `value`.
     function : ``exp``, ..., ``root`` for the power `exponent` of the argument, or ``quotient``,
-        whose value is the argument's.
-    exponent : of a root, or of ``pow``, as it is written.
+        which equals its argument.
+    value : the argument, free of functions.
+    exponent : of a root, or of ``pow``.
     """
 
     name: str
@@ -85,12 +86,7 @@ class Parts:
         return _replaced(law, dict(self.words))
 
     def facts(self, nonzero: frozenset[str] = frozenset()) -> Iterator[Clause]:
-        """Yield what is known of the parts, as clauses that are true for all real numbers.
-
-        Parameters
-        ----------
-        nonzero : names that are known not to be zero; products of them need no premise.
-        """
+        """Yield facts on the parts; divisors made of `nonzero` names need no premise."""
         for part in self.parts:
             bottom = part.value.bottom
             if part.argument != part.value.top or bottom != ONE:
@@ -105,10 +101,7 @@ class Parts:
 
 
 def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:
-    """Return the functions in some laws, and the quotients in those with choices.
-
-    Their names are not in `taken`.
-    """
+    """Return the functions in laws, and the quotients in laws with choices; names avoid `taken`."""
     words: dict[Node, Sym] = {}
     found: list[Part] = []
     used = set(taken)
@@ -138,7 +131,7 @@ def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:
 
 
 def _quotient(node: Node) -> tuple[str, Expr, Fraction | Expr] | None:
-    """Return a quotient that is not by a number as (name, itself, 1), else None."""
+    """Return a quotient as ("quotient", itself, 1), or None; division by a number is none."""
     match node:
         case Div(_, Num(value)) if value != 0:
             return None
@@ -150,7 +143,7 @@ def _quotient(node: Node) -> tuple[str, Expr, Fraction | Expr] | None:
 
 
 def _function(node: Node) -> tuple[str, Expr, Fraction | Expr] | None:
-    """Return a function or root as (name, argument, exponent), else None."""
+    """Return a function or root as (name, argument, exponent), or None."""
     match node:
         case Call(function, (arg,)) if (exponent := RECORDS[function].power) is not None:
             return "root", arg, exponent
@@ -191,13 +184,13 @@ def ratio(law: Expr) -> Ratio:
             top, bottom = power(a.top, size), power(a.bottom, size) if a.bottom != ONE else ONE
             return Ratio(top, bottom) if exponent > 0 else Ratio(bottom, top)
         case If(then, Cmp(op, left, right), other):  # its quotients have symbols of their own
-            return Ratio(If(_whole(then), Cmp(op, _whole(left), _whole(right)), _whole(other)))
+            return Ratio(If(_top(then), Cmp(op, _top(left), _top(right)), _top(other)))
     msg = f"{type(law).__name__} is not rational"
     raise TypeError(msg)
 
 
-def _whole(law: Expr) -> Expr:
-    """Return a law that divides by numbers only, without those divisions."""
+def _top(law: Expr) -> Expr:
+    """Return a law that divides by numbers only as a polynomial."""
     value = ratio(law)
     if value.bottom != ONE:
         raise TypeError("a choice divides, and the quotient has no symbol")
@@ -208,10 +201,7 @@ def _total(parts: list[Ratio]) -> Ratio:
     """Return a sum; with one common denominator its terms are added at once, in linear time."""
     if len({part.bottom for part in parts}) == 1:
         return Ratio(add(*(part.top for part in parts)), parts[0].bottom)
-    total = Ratio(ZERO)
-    for part in parts:
-        total = _sum(total, part)
-    return total
+    return reduce(_sum, parts, Ratio(ZERO))
 
 
 def _sum(a: Ratio, b: Ratio) -> Ratio:
@@ -219,18 +209,13 @@ def _sum(a: Ratio, b: Ratio) -> Ratio:
         return b
     if a.bottom == b.bottom:
         return Ratio(add(a.top, b.top), a.bottom)
-    return Ratio(
-        add(mul(a.top, b.bottom), mul(b.top, a.bottom)),
-        mul(a.bottom, b.bottom),
-    )
+    return Ratio(add(mul(a.top, b.bottom), mul(b.top, a.bottom)), mul(a.bottom, b.bottom))
 
 
 def implied(condition: Cmp, nonzero: frozenset[str]) -> Clause:
-    """Return what a comparison of rational sides says where it is defined, as a clause.
+    """Return a comparison of rational sides as a clause: it holds, or a divisor is zero.
 
-    Parameters
-    ----------
-    nonzero : names that are known not to be zero; products of them need no premise.
+    Divisors that are products of `nonzero` names cannot be.
     """
     bottoms = (ratio(side).bottom for side in (condition.left, condition.right))
     undefined = (Cmp("=", b, ZERO) for b in bottoms if not _product_of(b, nonzero))
@@ -238,7 +223,7 @@ def implied(condition: Cmp, nonzero: frozenset[str]) -> Clause:
 
 
 def _product_of(tree: Expr, known: frozenset[str]) -> bool:
-    """Return whether a tree is a product of powers of some names, and numbers other than zero."""
+    """Return whether a tree is a product of powers of known names and of nonzero numbers."""
     match tree:
         case Num(value):
             return value != 0
@@ -254,7 +239,7 @@ def _product_of(tree: Expr, known: frozenset[str]) -> bool:
 def cleared(condition: Cmp) -> Cmp:
     """Return a comparison of rational sides as one of polynomials.
 
-    Where a denominator is zero the result may hold although the comparison has no meaning.
+    Where a denominator is zero the result may hold although the comparison is undefined.
     """
     left, right = ratio(condition.left), ratio(condition.right)
     if left.bottom == ONE == right.bottom:
@@ -265,5 +250,5 @@ def cleared(condition: Cmp) -> Cmp:
 
 
 def signed(value: Ratio) -> Expr:
-    """Return a polynomial of the sign of a quotient: top times bottom."""
+    """Return a polynomial with the sign of a quotient: top times bottom."""
     return value.top if value.bottom == ONE else mul(value.top, value.bottom)

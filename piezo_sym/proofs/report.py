@@ -1,8 +1,8 @@
-"""Verdicts: what was proved, what was refuted and by which numbers, what is open and why.
+"""Verdicts, with the numbers that refute and the reasons why something is open.
 
-Input: rows.  Output: a `Report` to look at, to print, or to raise from; and files that others can
-check: ``proofs.json`` to read, ``proofs.smt2`` for a solver (``z3 proofs.smt2`` or ``cvc5
---incremental proofs.smt2``: each ``unsat`` proves the claim in the comment above it).
+Input: rows.  Output: a `Report` to print or to raise from, and files for others to check:
+``proofs.json`` to read, ``proofs.smt2`` for a solver (``z3 proofs.smt2`` or ``cvc5 --incremental
+proofs.smt2``: each ``unsat`` proves the claim in the comment above it).
 """
 
 import json
@@ -19,7 +19,7 @@ from piezo_sym.spec.model import Model
 
 @final
 class Verdict(Enum):
-    """PROVED for all states, inputs and parameters in the domain and every r; or not."""
+    """PROVED: for all states, inputs and parameters in the domain, and banks of every size."""
 
     PROVED = "PROVED"
     REFUTED = "REFUTED"
@@ -41,8 +41,8 @@ class Row:
     reason : for REFUTED what fails there, for OPEN what is missing.
     required : whether `generate` insists on it; else it is information.
     method : what decided it: algebra, branches (queries), or intervals (the law as a whole).
-    points : at how many points of the domain numbers tried to contradict it, and did not.
-    certificate : for intervals, what a second program needs to check them; see `signs`.
+    points : the number of points of the domain at which it was found true.
+    certificate : for intervals, the data for a second program to check; see `signs`.
     """
 
     id: str
@@ -58,7 +58,7 @@ class Row:
 
     @property
     def why(self) -> str:
-        """The reason, with the witness behind what fails there."""
+        """The reason, with the witness after its first part."""
         at = ", ".join(f"{name} = {value}" for name, value in (self.witness or {}).items())
         fails, *more = self.reason.split("; ", 1)
         return "; ".join([f"{fails} at {at}" if at else fails, *more])
@@ -84,7 +84,7 @@ class Report:
     ----------
     model : its name.
     rows : the verdicts.
-    obligations : what they are about, in the same order; units have none.
+    obligations : of the rows, in the same order; rows on units have none.
     system : the system as text, for a second program to check; see `published`.
     """
 
@@ -146,19 +146,19 @@ class Report:
 def smt2(report: Report, made: str) -> str:
     """Return every query of a report in SMT-LIB 2, each between push and pop.
 
-    Parameters
-    ----------
-    report : from `verify`.
-    made : the line that says what made the file.
+    The first line is `made`, which names the generator.
     """
-    whole = [row for row in report.rows if row.method == "intervals"]
-    elsewhere = {(row.id, row.element) for row in whole}
+    by_intervals = [row for row in report.rows if row.method == "intervals"]
+    elsewhere = {(row.id, row.element) for row in by_intervals}
     lines = [
         f"; {made}",
         f"; Claims on the laws of {report.model}.  Each query asserts the opposite of its claim:",
         "; `unsat` proves it, for all real numbers in the domain.  Functions such as exp stand",
         "; as symbols, of which some bounds are given.  Names have a question mark before them.",
-        *(f"; {row.id} of {row.element} is {row.verdict.value} by intervals" for row in whole),
+        *(
+            f"; {row.id} of {row.element} is {row.verdict.value} by intervals"
+            for row in by_intervals
+        ),
         "(set-logic QF_NRA)",
     ]
     for obligation in report.obligations:
@@ -185,12 +185,16 @@ def proofs_json(report: Report, model: Model, made: str) -> str:
 
 
 def _entry(row: Row, obligation: Obligation | None) -> dict[str, object]:
-    said = row.as_dict("")
-    entry = {name: said[name] for name in ("id", "element")}
-    entry |= {"statement": row.statement, "required": row.required}
-    entry |= {name: said[name] for name in ("verdict", "witness", "reason")}
-    entry |= {"method": row.method, "points": row.points}
-    entry["certificate"] = list(row.certificate) or None
+    plain = row.as_dict("")
+    entry = {
+        **{name: plain[name] for name in ("id", "element")},
+        "statement": row.statement,
+        "required": row.required,
+        **{name: plain[name] for name in ("verdict", "witness", "reason")},
+        "method": row.method,
+        "points": row.points,
+        "certificate": list(row.certificate) or None,
+    }
     if obligation:
         entry["latex"] = obligation.latex
         entry["assumptions"] = list(obligation.assumptions)

@@ -1,12 +1,12 @@
 """The sign of a law as a whole, where queries on its branches did not decide it.
 
-Input: a `SignOf` with the domain it is stated in, the order of names, and a solver.  Output: an
-`Outcome`: a verdict with its witness or its certificate, or None where the law has too many cases.
+Input: a `SignOf`, the order of names, and a solver.  Output: an `Outcome`: a verdict with its
+witness or certificate, or None where the law has too many cases.
 
-A law is split by the choices that its parameters make; each case assumes the domain and its own
-guards.  A law that reduces to ``prefactors * f(s)``, its letter being a positive scale times s, has
-the sign of both: the solver looks at the prefactors, interval arithmetic at ``f(s)*s``.  A sum is
-passive if each term is.  Where nothing is proved, simple numbers are tried in the law itself.
+A law is split by the choices on parameters; each case assumes the domain and its guards.  A law
+that reduces to ``prefactors * f(s)``, its letter being a positive scale times s, has the sign of
+both: the solver decides the prefactors, interval arithmetic ``f(s)*s``.  A sum is passive if each
+term is.  Where nothing is proved, simple numbers are tried in the law itself.
 """
 
 from collections.abc import Iterable, Sequence
@@ -16,20 +16,8 @@ from functools import reduce as fold
 from typing import final
 
 from piezo_sym.expressions.calculus import mul
-from piezo_sym.expressions.tree import (
-    ONE,
-    ZERO,
-    Add,
-    Cmp,
-    Expr,
-    If,
-    Mul,
-    Neg,
-    Num,
-    Sym,
-    names,
-)
-from piezo_sym.proofs.asked import Asked, Numbers, moved, tried
+from piezo_sym.expressions.tree import ONE, ZERO, Add, Cmp, Expr, If, Mul, Neg, Num, Sym, names
+from piezo_sym.proofs.asked import Domain, Numbers, moved_counterexample, simple_counterexample
 from piezo_sym.proofs.branches import opposite
 from piezo_sym.proofs.obligations import SignOf
 from piezo_sym.proofs.report import Verdict
@@ -37,9 +25,9 @@ from piezo_sym.proofs.signs.cases import balanced, cases, choice_outside, groupe
 from piezo_sym.proofs.signs.certificate import Case, Term
 from piezo_sym.proofs.signs.decide import decide_sign
 from piezo_sym.proofs.signs.reduce import Reduction, reductions
-from piezo_sym.proofs.solvers import Asks
+from piezo_sym.proofs.solvers import SolverLike
 
-#: Functions of one variable whose sign was not shown, before the search stops.
+#: Functions of one variable without a proved sign, after which the search stops.
 MOST_FAILED = 12
 
 
@@ -54,36 +42,32 @@ class Outcome:
     certificate: tuple[Case, ...] = ()
 
 
-def whole_sign(sign: SignOf, order: tuple[str, ...], solver: Asks) -> Outcome | None:
-    """Return the verdict on ``law*letter >= 0`` in a domain.
+def whole_sign(sign: SignOf, order: tuple[str, ...], solver: SolverLike) -> Outcome | None:
+    """Return the verdict on ``law*letter >= 0`` in a domain, or None if the law has too many cases.
 
-    Parameters
-    ----------
-    sign : the law, its letter, and the domain.
-    order : names, in the order in which a witness should be simple.
-    solver : for the signs of what stands in front of a function of the letter alone.
+    A witness is simple in the first names of `order`; the solver decides the signs of prefactors.
     """
     claim = Cmp(">=", mul(sign.law, Sym(sign.letter)), ZERO)
-    asked = Asked(sign.where, order, solver)
-    if numbers := tried(claim, sign.letter, asked):
+    domain = Domain(sign.where, order, solver)
+    if numbers := simple_counterexample(claim, sign.letter, domain):
         return Outcome(Verdict.REFUTED, numbers)
-    split = cases(sign.law, sign.letter, asked.positive)
+    split = cases(sign.law, sign.letter, domain.positive)
     if split is None:
         return None
     shown: list[Case] = []
     reasons: list[str] = []
     for guards, law in split:
-        search = Search(law, sign.letter, asked.within(*guards))
+        search = Search(law, sign.letter, domain.within(*guards))
         terms = search.terms(law)
         if terms is not None:
             shown.append(Case(guards, terms))
-        elif not search.asked.empty():
+        elif not search.domain.empty():
             if numbers := search.witness(claim):
                 return Outcome(Verdict.REFUTED, numbers)
             reasons += search.reasons[:1] or ["bounds on the functions in it do not decide it"]
     if not reasons:
         return Outcome(Verdict.PROVED, certificate=tuple(shown))
-    if numbers := moved(claim, sign.letter, asked):
+    if numbers := moved_counterexample(claim, sign.letter, domain):
         return Outcome(Verdict.REFUTED, numbers)
     return Outcome(Verdict.OPEN, reason=reasons[0])
 
@@ -91,24 +75,24 @@ def whole_sign(sign: SignOf, order: tuple[str, ...], solver: Asks) -> Outcome | 
 @final
 @dataclass(frozen=True)
 class Search:
-    """The search for what shows that a law has the sign of its letter.
+    """The search for a proof that a law has the sign of its letter.
 
     Attributes
     ----------
     law, letter : the law of one case, and its letter.
-    asked : the solver, in the domain and the guards of a case.
-    reasons : what is still open, filled as the search goes on.
-    negative : where a reduced law has the wrong sign: the reduction, its sign, and s.
+    domain : the domain with the guards of the case.
+    reasons : why functions f are left open, filled by the search.
+    negative : reduced laws of the wrong sign: the reduction, its sign, and a value of s.
     """
 
     law: Expr
     letter: str
-    asked: Asked
+    domain: Domain
     reasons: list[str] = field(default_factory=list)
     negative: list[tuple[Reduction, int, Fraction]] = field(default_factory=list)
 
     def terms(self, law: Expr) -> tuple[Term, ...] | None:
-        """Return terms whose sum is the law, each shown to be passive; None if one is not."""
+        """Return terms, each shown to be passive, whose sum is the law; None if one is not."""
         if law == ZERO:
             return ()
         law = choice_outside(law)
@@ -120,24 +104,24 @@ class Search:
             case If(then, condition, other):
                 sides = ((then, condition), (other, opposite(condition)))
                 return _joined(self._where(side, where) for side, where in sides)
-        groups = grouped(summands(law), self.letter, self.asked.positive)
+        groups = grouped(summands(law), self.letter, self.domain.positive)
         if not groups or len(groups) == 1:
             return self._polynomial(law)
         if (found := _joined(map(self._term, groups))) is not None:
             return found
-        groups = balanced(groups, self.letter, self.asked.positive)
+        groups = balanced(groups, self.letter, self.domain.positive)
         return None if groups is None else _joined(map(self._term, groups))
 
     def _where(self, law: Expr, condition: Cmp) -> tuple[Term, ...] | None:
-        """Return the terms of a law that counts where a condition holds and is zero elsewhere."""
+        """Return the terms of the law ``law if condition else 0``, or None."""
         found = () if law == ZERO else self._term(If(law, condition, ZERO))
         if found is None and (inner := self.terms(law)) is not None:
             return tuple(term.where(condition) for term in inner)
         return found
 
     def _term(self, law: Expr) -> tuple[Term] | None:
-        """Return a law as one term, if it reduces to one variable and is shown to be passive."""
-        for reduction in reductions(law, self.letter, self.asked.positive):
+        """Return a law as one term if it reduces to one variable and is shown to be passive."""
+        for reduction in reductions(law, self.letter, self.domain.positive):
             for sign in (1, -1):
                 if len(self.reasons) + len(self.negative) >= MOST_FAILED:
                     return None
@@ -154,24 +138,24 @@ class Search:
         return None
 
     def _polynomial(self, law: Expr) -> tuple[Term] | None:
-        """Return a part of the law as a term, if the solver shows that it is passive."""
+        """Return a part of the law as a term if the solver shows that it is passive."""
         power = mul(law, Sym(self.letter))
-        if law == self.law or not self.asked.follows(Cmp(">=", power, ZERO)):
+        if law == self.law or not self.domain.follows(Cmp(">=", power, ZERO)):
             return None
         return (Term(law, self.letter, power),)
 
     def _keeps(self, factors: Sequence[Expr], sign: int) -> bool:
         """Return whether ``sign*product >= 0`` is shown in the domain."""
-        left = [factor for factor in factors if not self.asked.nonnegative(factor)]
+        left = [factor for factor in factors if not self.domain.nonnegative(factor)]
         if not left:
             return sign > 0
         start: Expr = Num(Fraction(sign))
-        if self.asked.follows(Cmp(">=", fold(mul, left, start), ZERO)):
+        if self.domain.follows(Cmp(">=", fold(mul, left, start), ZERO)):
             return True
         return len(left) > 1 and self._signs(left) == sign
 
     def _signs(self, factors: Sequence[Expr]) -> int:
-        """Return the sign of a product from the signs of its factors; 0 if one is not known."""
+        """Return the sign of a product from those of its factors; 0 if one is not known."""
         total = 1
         for factor in factors:
             if not self._keeps([factor], 1):
@@ -179,22 +163,22 @@ class Search:
         return total
 
     def witness(self, claim: Cmp) -> Numbers | None:
-        """Return numbers at which a reduced law that has the wrong sign breaks the claim."""
+        """Return numbers at which a reduced law of the wrong sign breaks the claim, or None."""
         for n, (reduction, sign, value) in enumerate(self.negative):
             start: Expr = Num(Fraction(sign))
             front = Cmp("<=", fold(mul, reduction.prefactors, start), ZERO)
-            wanted = self.asked.near((*names(claim), *names(reduction.scale)))
-            found = None if n else self.asked.point(front, wanted)
-            for point in (*self.asked.samples, *((found,) if found else ())):
+            wanted = self.domain.related((*names(claim), *names(reduction.scale)))
+            found = None if n else self.domain.point(front, wanted)
+            for point in (*self.domain.samples, *((found,) if found else ())):
                 letter = reduction.back(value, point)
                 numbers = {**point, self.letter: letter or Fraction(0)}
-                if letter is not None and self.asked.breaks(claim, numbers):
+                if letter is not None and self.domain.breaks(claim, numbers):
                     return {name: value for name, value in numbers.items() if name in wanted}
         return None
 
 
 def _joined(parts: Iterable[tuple[Term, ...] | None]) -> tuple[Term, ...] | None:
-    """Return all terms, or None at the first part that has none."""
+    """Return the terms of all parts, or None if a part is None."""
     found: list[Term] = []
     for part in parts:
         if part is None:

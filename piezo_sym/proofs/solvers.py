@@ -19,30 +19,30 @@ from piezo_sym.proofs.query import MARK, Query, marked
 
 #: Seconds to wait for one answer; the solvers' own limits end a query long before.
 PATIENCE = 20.0
-#: Seconds to wait for the second solver, which is asked only where the first does not know.
+#: Seconds to wait for the second solver.
 LESS_PATIENCE = 5.0
-#: A name in a query; and of how many queries the answers are kept.
+#: A name in a query; the number of queries whose answers are kept.
 NAME, MOST_KNOWN = re.compile(re.escape(MARK) + r"\w+"), 10_000
 RESULTS = frozenset({"unsat", "sat", "unknown"})
-#: What reading a line raises that is no answer.
+#: Exceptions from reading a line that is no answer.
 MALFORMED = (ValueError, TypeError, AttributeError, LookupError, ZeroDivisionError)
 
 
 @final
 @dataclass(frozen=True)
 class Answer:
-    """What a solver says: ``unsat`` proves the claim; ``sat`` has a model if one is wanted."""
+    """A solver's answer: ``unsat`` proves the claim; ``sat`` has a model if one is wanted."""
 
     result: str
     model: Mapping[str, Fraction] = field(default_factory=dict)
     reason: str = ""
 
 
-class Asks(Protocol):
-    """What answers queries: a solver, several of them, or a stand-in of a test."""
+class SolverLike(Protocol):
+    """Answers queries: a solver, several of them, or a stand-in of a test."""
 
     def ask(self, query: Query) -> Answer:
-        """Return the answer to a query; never raises for what a solver does."""
+        """Return the answer to a query; a failure of the solver is the answer ``unknown``."""
 
 
 @final
@@ -61,15 +61,15 @@ class Solver:
         self._known: dict[str, Answer] = {}
 
     def ask(self, query: Query) -> Answer:
-        """Return the answer to a query; never raises for what the solver does."""
+        """Return the answer to a query; ``unknown`` if the solver fails or takes too long."""
         order = [marked(name) for name in query.variables] if query.witness else []
         text = query.text()
-        alike = "" if order else _numbered(text)
-        if alike in self._known:
-            return self._known[alike]
+        key = "" if order else _numbered(text)
+        if key in self._known:
+            return self._known[key]
         answer = self._asked(json.dumps({"text": text, "order": order}).encode())
-        if alike and answer.result != "unknown" and len(self._known) < MOST_KNOWN:
-            self._known[alike] = answer
+        if key and answer.result != "unknown" and len(self._known) < MOST_KNOWN:
+            self._known[key] = answer
         return answer
 
     def _asked(self, request: bytes) -> Answer:
@@ -83,7 +83,7 @@ class Solver:
 
 
 def _numbered(text: str) -> str:
-    """Return a query with numbers for names: of two that differ by names alone, one is asked."""
+    """Return a query with numbers for names, equal for queries that differ by names alone."""
     found: dict[str, str] = {}
     return NAME.sub(lambda name: found.setdefault(name[0], f"?{len(found)}"), text)
 
@@ -102,27 +102,27 @@ def _read(line: bytes) -> Answer:
 @final
 @dataclass(frozen=True)
 class Opinions:
-    """Two solvers: where the first does not know, the second is asked.
+    """Two solvers, the second for what the first does not know.
 
-    Of the second only a proof counts: it gives no model that could be checked.
+    Only a proof counts of the second, as it gives no model that could be checked.
     """
 
-    first: Asks
-    second: Asks
+    first: SolverLike
+    second: SolverLike
 
     def ask(self, query: Query) -> Answer:
-        """Return the first's answer, or that the second has a proof, or the reasons of both."""
+        """Return the first solver's answer, else the second's proof, else the reasons of both."""
         answer = self.first.ask(query)
         if answer.result != "unknown":
             return answer
         other = self.second.ask(query)
         if other.result == "unsat":
             return Answer("unsat")
-        said = other.reason or f"a second solver says {other.result}, without a model"
-        return Answer("unknown", reason=f"{answer.reason}; {said}")
+        reason = other.reason or f"a second solver says {other.result}, without a model"
+        return Answer("unknown", reason=f"{answer.reason}; {reason}")
 
 
-def opinions() -> Asks:
+def opinions() -> SolverLike:
     """Return z3, and cvc5 for what z3 does not know, if it is installed."""
     if find_spec("cvc5") is None:
         return solver("z3")

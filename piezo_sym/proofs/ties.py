@@ -1,8 +1,8 @@
-"""What the letter of a dissipative law is: its drive, as a function of states and inputs.
+"""Ties of the letter of a dissipative law to its drive, a function of states and inputs.
 
-Input: an `IPHS`.  Output: by element, a comparison letter = drive, where not every value of the
-letter is taken in the domain, or not at every value of a state that the law reads; None where the
-drive is no such function: a refutation then says nothing.
+Input: an `IPHS`.  Output: by element, the comparison letter = drive where the domain, or a state
+that the law reads, may restrict the values of the letter; None where the drive is no such function,
+so that numbers refute nothing.
 """
 
 from collections.abc import Iterator, Mapping
@@ -25,7 +25,7 @@ from piezo_sym.spec.tables import conditions
 
 
 def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
-    """Return what ties the letter of each dissipative law that domain or law may bound."""
+    """Return the tie of each dissipative law whose letter the domain or the law may restrict."""
     bounded, words = frozenset(_bounded(iphs)), dict(_words(iphs))
     states = {slot.label for slot in iphs.system.states}
     processes = iphs.circuit.of(DissipativePort, Conductor)
@@ -43,10 +43,10 @@ def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
 
 
 def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
-    """Yield the inputs that the domain speaks of, and co-states that may not take every value.
+    """Yield the inputs in the domain's conditions, and co-states that may not take every value.
 
-    A current phi/L takes every value if L > 0, unless the domain speaks of phi; that of a softening
-    inductor, or of one that moves, may not, nor do temperatures.
+    A current phi/L takes every value if L > 0 and no condition has phi.  The current of a softening
+    or a moving inductor may not, nor may temperatures.
     """
     trees = [condition.tree for condition in conditions(iphs.model)]
     used = {name for tree in trees for name in names(tree)}
@@ -65,19 +65,19 @@ def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
 
 
 def _symbols(iphs: IPHS, drive: sp.Expr) -> set[sp.Symbol]:
-    """Return the symbols that a drive depends on, those of its shares and slopes among them."""
-    meant = dict((*iphs.shares, *iphs.slopes))
+    """Return the symbols that a drive depends on, also through its shares and slopes."""
+    definitions = dict((*iphs.shares, *iphs.slopes))
     found: set[sp.Symbol] = set()
     left = set(drive.free_symbols)
     while left:
         symbol = left.pop()
         found.add(symbol)
-        left |= set(getattr(meant.get(symbol), "free_symbols", ())) - found
+        left |= set(getattr(definitions.get(symbol), "free_symbols", ())) - found
     return found
 
 
 def _words(iphs: IPHS) -> Iterator[tuple[sp.Symbol, Expr]]:
-    """Yield what co-states, inputs and ratios are in the words of the domain."""
+    """Yield co-states, inputs, temperatures and ratios with their laws in names of the domain."""
     for _, store in iphs.circuit.of(Storage):
         yield iphs.symbols[store.costate], store.law
     for _, source in iphs.circuit.of(Source):
@@ -89,7 +89,7 @@ def _words(iphs: IPHS) -> Iterator[tuple[sp.Symbol, Expr]]:
 
 
 def _tree(drive: sp.Expr, words: Mapping[sp.Symbol, Expr]) -> Expr | None:
-    """Return a drive in the words of the domain, or None if it depends on anything else."""
+    """Return a drive in names of the domain, or None if it depends on anything else."""
     if not drive.is_rational_function(*words) or not drive.free_symbols <= words.keys():
         return None
     return replace(coefficient(drive), {str(s.name): tree for s, tree in words.items()})

@@ -1,11 +1,11 @@
-"""Units: every law, input, condition and initial value of a spec has the unit that its row needs.
+"""The row ``units``: every law, input, condition and initial value has the unit that is needed.
 
 Input: an `IPHS`, for its spec.  Output: one row PROVED, or a row REFUTED for each fault.  The
 junction laws add like quantities only, so the equations have the right units if each law has.
 
-A fault is one linear equation between the dimensions of names that does not hold.  Its remedy is
-solved for: a change of the unit of one parameter that mends every fault at once, and else one that
-mends this fault and breaks nothing.
+A fault is a linear equation between the dimensions of names that does not hold.  Its remedy is
+solved for: the unit of one parameter with which all faults vanish, or else this one, without a new
+fault.
 """
 
 from collections.abc import Iterable, Iterator
@@ -41,7 +41,7 @@ MOST_CANDIDATES = 3
 @final
 @dataclass(frozen=True)
 class Check:
-    """A rule on units at its place, and the factor that its left side lacks."""
+    """A rule on units, its place, the powers of names in it, and the unit it lacks on the left."""
 
     place: Place
     rule: Match
@@ -52,9 +52,9 @@ class Check:
 def units(iphs: IPHS) -> Iterator[Row]:
     """Yield one row if every unit fits, else a row for each fault."""
     model = iphs.model
-    spots = tuple(places(model))
-    checks = tuple(_check(place, rule) for place in spots for rule in place.rules())
-    wrong = [_check(place, rule) for place in spots for rule in faults(place.rules(), place.words)]
+    known = tuple(places(model))
+    checks = tuple(_check(place, rule) for place in known for rule in place.rules())
+    wrong = [_check(place, rule) for place in known for rule in faults(place.rules(), place.words)]
     if not wrong:
         yield Row("units", "", STATEMENT, Verdict.PROVED)
     for fault in wrong:
@@ -68,7 +68,7 @@ def _check(place: Place, rule: Match) -> Check:
 
 
 def _finding(fault: Check, model: Model) -> str:
-    """Return what is wrong: the smallest term, its unit, and what is needed."""
+    """Return the fault in words: the smallest wrong term, its unit, and the unit needed."""
     rule = fault.rule
     left = f"{_short(rule.left)} {_unit(rule.left, fault.place, model)}"
     if rule.right is not None:
@@ -80,7 +80,7 @@ def _finding(fault: Check, model: Model) -> str:
 
 
 def _other_kind(fault: Check, model: Model) -> str:
-    """Return which kind of coupling would take a ratio in the unit that it has."""
+    """Return the hint at kinds of coupling that take a ratio of this unit."""
     found = dimension(fault.rule.left, fault.place.words)
     if not fault.rule.whole or not fault.place.element or found is None:
         return ""
@@ -89,7 +89,7 @@ def _other_kind(fault: Check, model: Model) -> str:
 
 
 def _unit(term: Expr, place: Place, model: Model) -> str:
-    """Return "is A/K", the unit of a parameter or input as the spec spells it."""
+    """Return the unit of a term as "is A/K", of a parameter or input as the spec spells it."""
     found = dimension(term, place.words)
     if found is None or found == NONE:
         return "has no unit"
@@ -102,7 +102,7 @@ def _remedy(fault: Check, checks: tuple[Check, ...]) -> str:
     """Return what to change: the unit of a parameter, a number, an input, or the law."""
     suspects = [name for name in fault.place.given if _power(name, fault)]
     fits = {name: _fitting(name, checks) for name in suspects}
-    if not any(fits.values()):  # two things are wrong: leave alone what the name has no part in
+    if not any(fits.values()):  # several names are wrong: consider only the rules with each name
         own = {name: [c for c in checks if _power(name, c)] for name in suspects}
         fits = {name: _fitting(name, own[name]) for name in suspects}
     offers = [f"{name}: {unit_text(fit)} would fit" for name, fit in fits.items() if fit]
@@ -117,18 +117,13 @@ def _power(name: str, check: Check) -> Fraction:
 
 def _fitting(name: str, checks: Iterable[Check]) -> Dimension | None:
     """Return the unit of `name` with which every check holds, or None if there is none."""
-    found = None
+    fits = set()
     for check in checks:
-        power = _power(name, check)
-        if not power:
-            if check.gap != NONE:
-                return None
-            continue
-        fit = times(check.place.given[name], check.gap, 1 / power)
-        if found not in (None, fit):
+        if power := _power(name, check):
+            fits.add(times(check.place.given[name], check.gap, 1 / power))
+        elif check.gap != NONE:
             return None
-        found = fit
-    return found
+    return fits.pop() if len(fits) == 1 else None
 
 
 def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
@@ -136,10 +131,10 @@ def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
     rule, words = fault.rule, fault.place.words
     for part, other in ((rule.right, rule.left), (rule.left, rule.right)):
         if part is not None and not names(part):
-            whole = rule.needed if other is None else dimension(other, words)
-            if whole and (factor := _factor(other)):
-                return f"make {_short(factor)} a parameter in {unit_text(times(NONE, whole, -1))}"
-            return f"make {_short(part)} a parameter in {unit_text(whole or NONE)}"
+            unit = rule.needed if other is None else dimension(other, words)
+            if unit and (factor := _factor(other)):
+                return f"make {_short(factor)} a parameter in {unit_text(times(NONE, unit, -1))}"
+            return f"make {_short(part)} a parameter in {unit_text(unit or NONE)}"
     if isinstance(fault.place.tree, Sym) and fault.place.tree.name in fault.place.given:
         return _own_input(fault, fault.place.tree.name, checks)
     if rule.whole:
@@ -150,7 +145,7 @@ def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
 
 
 def _factor(term: Expr | None) -> Num | None:
-    """Return a number by which a term is multiplied, if there is one."""
+    """Return a numeric factor of a term, or None."""
     match term:
         case Num():
             return term
@@ -162,7 +157,7 @@ def _factor(term: Expr | None) -> Num | None:
 
 
 def _own_input(fault: Check, name: str, checks: tuple[Check, ...]) -> str:
-    """Return what to do about an input, or a law that is one parameter, with several uses."""
+    """Return the remedy for an input, or a law that is one parameter, used with several units."""
     others = [
         check.place.where
         for check in checks
@@ -174,13 +169,13 @@ def _own_input(fault: Check, name: str, checks: tuple[Check, ...]) -> str:
 
 
 def _numbers(term: Expr) -> str:
-    """Return a reminder that numbers in a law have no unit, if it has any."""
+    """Return the reminder, for a term with numbers, that these have no unit."""
     found = next((node for node in walk(term) if isinstance(node, Num) and node.value), None)
     return f", or make {_short(found)} a parameter with its unit" if found else ""
 
 
 def _short(node: Node) -> str:
-    """Return a term as the user spelled it, cut if it is long."""
+    """Return a term as the user spelled it, shortened if it is long."""
     bare = node.arg if isinstance(node, Neg) else node
     text = condition_text(bare) if isinstance(bare, Cmp) else spell(bare)
     return text if len(text) <= MOST_TERM else f"{text[: MOST_TERM - 3]}..."

@@ -14,8 +14,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-#: Limits on a query, in the solver's own units of work, not in seconds: the same query has the same
-#: answer on every machine.
+#: Limits on a query in the solver's own units of work, which give the same answer on every machine.
 Z3_LIMIT = 20_000_000
 SIMPLER_LIMIT = 300_000
 CVC5_LIMIT = 2_000_000
@@ -31,7 +30,7 @@ Answer = dict[str, Any]
 
 
 def ask_z3(text: str, order: Sequence[str]) -> Answer:
-    """Return z3's answer, with values of the names in `order`, made simple one after the other."""
+    """Return z3's answer; a model has the names in `order`, each value as simple as possible."""
     import z3
 
     context = z3.Context()  # a new one: earlier queries cannot change an answer
@@ -99,7 +98,7 @@ SOLVERS = {"z3": ask_z3, "cvc5": ask_cvc5}
 
 
 def answered(name: str, line: str) -> str:
-    """Return the answer to a request, both as a line; an exception is an answer, too."""
+    """Return the answer line to a request line; an exception is answered as ``unknown``."""
     request = json.loads(line)
     try:
         answer = SOLVERS[name](request["text"], request["order"])

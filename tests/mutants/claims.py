@@ -57,8 +57,8 @@ only the first branch is asked about
   + return tuple(found[:1])
   = d*v if b > a_1 else a*v | d > 0; a_1 > 0
 conduction has nothing to show
-  - (*valued(law.tree, assumptions), *on_branches(law.tree, question))
-  + valued(law.tree, assumptions)
+  - (*value_questions(law.tree, assumptions), *branch_questions(law.tree, question))
+  + value_questions(law.tree, assumptions)
   = conduction
 a law has a value everywhere
   - return made if needed else None
@@ -150,9 +150,9 @@ a refuted question is left open, and forgotten
   +         left += [found] if found else []
   = a*v
 a model that breaks the claim is a proof
-  - answer = solver.ask(replace(question, whole=True).query)
+  - answer = solver.ask(replace(question, keep_all=True).query)
   -         if answer.result == "unsat":
-  + answer = solver.ask(replace(question, whole=True).query)
+  + answer = solver.ask(replace(question, keep_all=True).query)
   +         if answer.result == "sat":
   = a*v
 ## proofs/asked
@@ -215,13 +215,13 @@ what is left open is shown
   + elif decision.verdict is Verdict.REFUTED:
   = F_1*(v/v_1)*(exp((v/v_1)**2/2) - 2.71828182846*(v/v_1)**2/2) | F_1 > 0; v_1 > 0
 a case that is not shown is empty
-  - elif not search.asked.empty():
-  + elif search.asked.empty():
+  - elif not search.domain.empty():
+  + elif search.domain.empty():
   = F_1*(log(1 + exp(v/v_1)) - log(2)) if a > 0 else
   = F_1*(v/v_1)*(exp(v/v_1 - 0.37) - 2.7184*(v/v_1 - 0.37)) | F_1 > 0; v_1 > 0
 every factor keeps its sign
-  - if self.asked.follows(Cmp(">=", fold(mul, left, start), ZERO)):
-  + if self.asked.follows(Cmp(">=", fold(mul, left, start), fold(mul, left, start))):
+  - if self.domain.follows(Cmp(">=", fold(mul, left, start), ZERO)):
+  + if self.domain.follows(Cmp(">=", fold(mul, left, start), fold(mul, left, start))):
   = (1000*a_1 - a)*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | a_1 > 0; v_1 > 0 | a=2000.0
 a factor that keeps no sign is left out
   - total = -total if self._keeps([factor], -1) else 0
@@ -229,7 +229,7 @@ a factor that keeps no sign is left out
   = (1000*a_1 - a)*(b - a_1)/a_1*v*(exp(v/v_1) - 7.38*(v/v_1 - 1)) | a_1 > 0; v_1 > 0; b > a_1
   = | a=2000.0
 a polynomial part is passive
-  - if law == self.law or not self.asked.follows(Cmp(">=", power, ZERO)):
+  - if law == self.law or not self.domain.follows(Cmp(">=", power, ZERO)):
   + if law == self.law:
   = F_1*(log(1 + exp(v/v_1)) - log(2)) + min(a + 5*a_1, d)*v | F_1 > 0; a_1 > 0; v_1 > 0; d > 0
   = | a=-6.0

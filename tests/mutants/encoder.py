@@ -104,8 +104,8 @@ a power of -1 is one of 1
   + return Ratio(top, bottom)
   = d*v*((b/a_1)**(-1) - 1) | d > 0; a_1 > 0; b > a_1
 a choice's sides swapped as it is cleared
-  - If(_whole(then), Cmp(op, _whole(left), _whole(right)), _whole(other))
-  + If(_whole(other), Cmp(op, _whole(left), _whole(right)), _whole(then))
+  - If(_top(then), Cmp(op, _top(left), _top(right)), _top(other))
+  + If(_top(other), Cmp(op, _top(left), _top(right)), _top(then))
   = a*v | a_1 > 0; (a if b > a_1 else b) > 0; b < a_1/2 | b=0.3
 a sum of quotients by each its own divisor
   - add(mul(a.top, b.bottom), mul(b.top, a.bottom))

@@ -48,8 +48,8 @@ abs reaches zero nowhere
   + interval(min(-a.lo, a.hi), max(-a.lo, a.hi), a.nonzero)
   = F_1*(v/v_1)*(abs(exp(v/v_1) - 9) - 0.01) if v > 2*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 a root is at least that of the right end
-  - low = a.lo if a.lo in (0, -INF) else _down(function(_ball(a.lo)))
-  + low = a.lo if a.lo in (0, -INF) else _down(function(_ball(min(a.hi, 1e9))))
+  - low = a.lo if a.lo in (0, -INF) else _down(function(arb(a.lo)))
+  + low = a.lo if a.lo in (0, -INF) else _down(function(arb(min(a.hi, 1e9))))
   = F_1*(v/v_1)*(sqrt(1 + exp(v/v_1)) - 2.9) if v > 2*v_1 else F_1*v/v_1 | F_1 > 0; v_1 > 0
 ## proofs/signs/jets
 tanh rises everywhere as at zero

@@ -19,10 +19,10 @@ a transducer's square
   + return _across(port.second, ratio*ratio), _across(port.first, -ratio*ratio)
   = transducer_between_moving_nodes
 the through variable of a coupling is doubled
-  - _draw(rows, port.first, Equation(first, {}), self.field.one)
-  -                 _draw(rows, port.second, Equation(second, {}), self.field.one)
-  + _draw(rows, port.first, Equation(first, {}), 2*self.field.one)
-  +                 _draw(rows, port.second, Equation(second, {}), 2*self.field.one)
+  - _book(rows, port.first, Equation(first, {}), self.field.one)
+  -                 _book(rows, port.second, Equation(second, {}), self.field.one)
+  + _book(rows, port.first, Equation(first, {}), 2*self.field.one)
+  +                 _book(rows, port.second, Equation(second, {}), 2*self.field.one)
   = transducer_between_moving_nodes
 a coupling is left out
   - for port, ratio in self.ratio.items():

@@ -1,8 +1,8 @@
-"""A law split by the choices that its parameters make, and sums by what one letter reduces to.
+"""A law split into cases by the choices on its parameters, and a sum into terms of one scale.
 
-Input: a law, its letter, and what is known to be positive.  Output: pairs of guards and the law
-where they hold.  Each choice gives a guard and its opposite, so that the pairs cover all; a
-condition is decided after those that lead to it, since only then must it have a value.
+Input: a law, its letter, and a test of positivity.  Output: pairs of guards and the law where they
+hold.  Each choice gives a guard and its opposite, so the pairs cover all points.  A condition is
+decided after those around it, as only then must it have a value.
 """
 
 from collections import Counter
@@ -36,16 +36,16 @@ from piezo_sym.proofs.branches import opposite
 from piezo_sym.proofs.signs.reduce import Positive, factored, reductions, settings
 from piezo_sym.proofs.signs.shift import rational_at
 
-#: More cases than these are not looked at.
+#: A law with more cases is left open.
 MOST = 32
 
 Guards: TypeAlias = tuple[Cmp, ...]
 
 
 def cases(law: Expr, letter: str, positive: Positive) -> tuple[tuple[Guards, Expr], ...] | None:
-    """Return guards and the law where they hold, guards in order of evaluation; None if too many.
+    """Return (guards in order of evaluation, the law where they hold); None if too many.
 
-    A condition below a choice by the letter is decided only if it has a value everywhere.
+    A condition inside a choice by the letter is decided only if it has a value everywhere.
     """
     found = tuple(islice(_split(law, letter, positive, ()), MOST + 1))
     return found if len(found) <= MOST else None
@@ -54,7 +54,7 @@ def cases(law: Expr, letter: str, positive: Positive) -> tuple[tuple[Guards, Exp
 def _split(
     law: Expr, letter: str, positive: Positive, guards: Guards
 ) -> Iterator[tuple[Guards, Expr]]:
-    choice = _next(law, letter, positive, sure=True)
+    choice = _next_choice(law, letter, positive, sure=True)
     if choice is None:
         yield guards, law
         return
@@ -63,22 +63,22 @@ def _split(
         yield from _split(decided(law, {choice: holds}), letter, positive, (*guards, guard))
 
 
-def _next(node: Node, letter: str, positive: Positive, *, sure: bool) -> Cmp | None:
-    """Return the comparison to decide next; `sure` says that a tree is evaluated for any letter."""
+def _next_choice(node: Node, letter: str, positive: Positive, *, sure: bool) -> Cmp | None:
+    """Return the comparison to decide next; `sure`: the tree is evaluated for every letter."""
     if not isinstance(node, If):
-        found = (_next(part, letter, positive, sure=sure) for part in children(node))
+        found = (_next_choice(part, letter, positive, sure=sure) for part in children(node))
         return next((choice for choice in found if choice), None)
     condition = node.condition
-    if inner := _next(condition, letter, positive, sure=sure):
+    if inner := _next_choice(condition, letter, positive, sure=sure):
         return inner
-    if letter not in names(condition) and (sure or _total(condition, positive)):
+    if letter not in names(condition) and (sure or _is_total(condition, positive)):
         return condition
-    found = (_next(part, letter, positive, sure=False) for part in (node.then, node.other))
+    found = (_next_choice(part, letter, positive, sure=False) for part in (node.then, node.other))
     return next((choice for choice in found if choice), None)
 
 
-def _total(condition: Cmp, positive: Positive) -> bool:
-    """Return whether a comparison has a value wherever its names have."""
+def _is_total(condition: Cmp, positive: Positive) -> bool:
+    """Return whether a comparison has a value for all values of its names."""
     for part in walk(condition):
         match part:
             case Num() | Div(_, Num()):
@@ -92,14 +92,14 @@ def _total(condition: Cmp, positive: Positive) -> bool:
     return True
 
 
-#: Terms of a sum that is multiplied out.
+#: Most terms of an expanded sum.
 MOST_TERMS = 24
 
 
 def grouped(terms: Sequence[Expr], letter: str, positive: Positive) -> list[Expr] | None:
-    """Return a sum as sums of one scale each, with one product in front; None if it cannot be.
+    """Return a sum as groups of terms with one scale and one prefactor each; None if impossible.
 
-    Terms without the letter go to the first group that has the same in front.
+    Terms without the letter go to the first group with their prefactor.
     """
     groups: list[Expr] = []
     left = list(terms)
@@ -110,20 +110,20 @@ def grouped(terms: Sequence[Expr], letter: str, positive: Positive) -> list[Expr
             part = factored(term, setting)
             if {*names(part.bound)} <= {letter}:
                 fronts.setdefault(frozenset(part.free.items()), []).append(term)
-        made = [found for found in fronts.values() if letter in names(Add(tuple(found)))]
-        groups += [found[0] if len(found) == 1 else Add(tuple(found)) for found in made]
-        for term in (term for found in made for term in found):
+        found = [group for group in fronts.values() if letter in names(Add(tuple(group)))]
+        groups += [group[0] if len(group) == 1 else Add(tuple(group)) for group in found]
+        for term in (term for group in found for term in group):
             left.remove(term)
     return None if left else groups
 
 
 def balanced(groups: Sequence[Expr], letter: str, positive: Positive) -> list[Expr] | None:
-    """Return a sum's groups, each less its value where the letter is zero; None if these remain.
+    """Return a sum's groups, each less its value at letter 0; None if these values do not cancel.
 
-    ``F*exp(v/v_1)`` and ``-F*exp(-v/v_2)`` are F and -F there, which cancel.
+    ``F*exp(v/v_1)`` and ``-F*exp(-v/v_2)`` have the values F and -F, which cancel.
     """
     total: dict[frozenset[tuple[Expr, int]], Fraction] = {}
-    made: list[Expr] = []
+    shifted: list[Expr] = []
     for group in groups:
         reduction = next(iter(reductions(group, letter, positive)), None)
         at_zero = None if reduction is None else rational_at(reduction.f, Fraction(0))
@@ -133,12 +133,12 @@ def balanced(groups: Sequence[Expr], letter: str, positive: Positive) -> list[Ex
         total[front] = total.get(front, Fraction(0)) + at_zero
         constant: Expr = Num(-at_zero)
         constant = fold(Mul, reduction.prefactors, constant)
-        made.append(Add((group, constant)) if at_zero else group)
-    return None if any(total.values()) else made
+        shifted.append(Add((group, constant)) if at_zero else group)
+    return None if any(total.values()) else shifted
 
 
 def summands(node: Expr) -> list[Expr]:
-    """Return a law as a sum, products of sums multiplied out; few terms, or the law itself."""
+    """Return the terms of a law with products of sums expanded, or the law if they are too many."""
     match node:
         case Add(terms):
             found = [part for term in terms for part in summands(term)]
@@ -154,7 +154,7 @@ def summands(node: Expr) -> list[Expr]:
 
 
 def choice_outside(node: Expr) -> Expr:
-    """Return a product with a choice among its factors as a choice of products."""
+    """Return a product that has a choice as a factor as a choice of products."""
     match node:
         case Neg(arg) if isinstance(inner := choice_outside(arg), If):
             return If(neg(inner.then), inner.condition, neg(inner.other))

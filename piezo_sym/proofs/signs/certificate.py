@@ -1,11 +1,11 @@
-"""What was shown of a law by intervals, as data that a second program can check.
+"""Certificates: proofs by intervals as data that a second program can check.
 
-Input: nothing; these are the types.  Output: `Case` records, and plain JSON of them (`as_data`).
-Texts are in the law language; ``s`` stands for the letter of `f`.
+These are the types; `as_data` gives plain JSON.  Texts are in the law language, with ``s`` for the
+letter of `f`.
 
-A certificate claims that law*letter >= 0 in the domain.  Its cases cover the domain: at each of its
-points all guards of one case hold, and the law is then the sum of the laws of that case's terms,
-wherever it is defined.  A law of zero has no terms.  A guard has no letter in it.
+A certificate claims that law*letter >= 0 in the domain.  Its cases cover the domain: at each point
+all guards of some case hold, and the law is the sum of the laws of that case's terms wherever it is
+defined.  A law of zero has no terms.  Guards are free of the letter.
 """
 
 from __future__ import annotations
@@ -25,14 +25,13 @@ LETTER = "s"
 @final
 @dataclass(frozen=True, slots=True)
 class Windows:
-    """Some t on each of which a function of x = centre + side*t is shown to be >= 0.
+    """Windows of t on which a function of x = centre + side*t is shown to be >= 0.
 
     Attributes
     ----------
     centre, side : a rational number, and 1 or -1.
-    windows : (lo, hi, order) for lo < t <= hi; hi may be infinite; order is how many derivatives
-        were used.  A window at lo = 0 says nothing of t = 0, the centre, where the function was
-        evaluated by itself.
+    windows : (lo, hi, order) for lo < t <= hi, hi possibly infinite, with the number of derivatives
+        used.  The centre t = 0 is in no window; the function is evaluated there separately.
     """
 
     centre: Fraction
@@ -58,13 +57,13 @@ class Term:
     ----------
     law : in the letter.
     letter : its name.
-    prefactor : may hold the letter; ``sign*prefactor >= 0`` follows from the domain and the guards,
-        for every value of the letter, wherever the prefactor is defined.
+    prefactor : may contain the letter; ``sign*prefactor >= 0`` follows from domain and guards for
+        every value of the letter, wherever the prefactor is defined.
     sign : 1 or -1.
-    scale : (base, power); each base is free of the letter and > 0 by the domain and the guards.
-    f : a tree in the letter's name alone, which stands for s: f is defined and ``sign*f(s)*s >= 0``
-        for all real s.  None says that the prefactor is law*letter itself.
-    rays : where that was shown; every real s is a centre of these or lies in one of their windows.
+    scale : (base, power); each base is free of the letter and > 0 by domain and guards.
+    f : a tree in the letter, which stands for s: f is defined and ``sign*f(s)*s >= 0`` for all real
+        s.  None: the prefactor is law*letter itself.
+    rays : the windows of that proof; every real s is a centre or lies in a window.
     """
 
     law: Expr
@@ -76,12 +75,12 @@ class Term:
     rays: tuple[Windows, ...] = ()
 
     def where(self, condition: Cmp) -> Term:
-        """Return the term that counts where a condition holds and is zero elsewhere."""
+        """Return the term of ``law if condition else 0``."""
         law, prefactor = (If(part, condition, ZERO) for part in (self.law, self.prefactor))
         return replace(self, law=law, prefactor=prefactor)
 
     def as_data(self) -> dict[str, object]:
-        """Return plain data; a power that is not whole is text such as 1/2."""
+        """Return plain data; a fractional power is text such as 1/2."""
         scale = {spell(b): int(e) if e.denominator == 1 else str(e) for b, e in self.scale}
         f = None if self.f is None else spell(rename(self.f, {self.letter: LETTER}))
         return {

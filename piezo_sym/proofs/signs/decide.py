@@ -1,10 +1,9 @@
 """Whether a function of one real variable is nowhere negative: proved, refuted, or open.
 
-Input: a tree in one name.  Output: a `Decision`.  From zero, both rays x = t and x = -t, t > 0, are
-cut into windows until an enclosure shows f >= 0 on each, a window to infinity among them; where f
-touches zero at a number c, rays x = c + t and x = c - t are.  Near a zero of f at c the jets there
-are exact: that is Taylor's theorem.  Work is counted in derivatives on windows, not in seconds: the
-same law gives the same decision everywhere.
+Input: a tree in one name.  Output: a `Decision`.  Both rays x = t and x = -t, t > 0, are cut into
+windows, the last to infinity, until an enclosure shows f >= 0 on each.  Where f touches zero at a
+number c, so are rays x = c + t and x = c - t: the jets at c are exact, as in Taylor's theorem.
+Work is counted in derivatives on windows, not in seconds: the same decision on every machine.
 """
 
 import math
@@ -19,7 +18,7 @@ from piezo_sym.proofs.signs.enclosures import Window, enclose, value
 from piezo_sym.proofs.signs.intervals import INF
 from piezo_sym.proofs.signs.shift import recentred
 
-#: Derivatives on windows that are looked at before a decision is left open.
+#: Derivatives on windows that are evaluated before a decision is left open.
 BUDGET = 1000
 #: Orders of derivatives tried on each window, and those tried at both ends of a ray.
 ORDERS, MORE_ORDERS = (0, 2), (0, 2, 8)
@@ -27,9 +26,9 @@ ORDERS, MORE_ORDERS = (0, 2), (0, 2, 8)
 NEAR, FAR = 2.0**-4, 8.0
 #: A window narrower than this times its distance (or 1) is not cut further.
 NARROWEST = 2.0**-16
-#: Windows that could not be decided before the search stops.
+#: Undecided windows after which the search stops.
 MOST_UNDECIDED = 3
-#: Beyond this no window is cut off from one to infinity.
+#: A window from here to infinity is not cut further.
 FARTHEST = 2.0**20
 #: Windows tried on each side of a point where f touches zero.
 MOST_BESIDE = 12
@@ -45,7 +44,7 @@ ZERO = Fraction(0)
 @final
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What was found: for REFUTED where f is negative, for OPEN why, for PROVED the windows."""
+    """A verdict, with x where f < 0 if REFUTED, the reason if OPEN, and the windows if PROVED."""
 
     verdict: Verdict
     witness: Fraction | None = None
@@ -54,17 +53,10 @@ class Decision:
 
 
 def decide_sign(f: Expr, name: str, budget: int = BUDGET) -> Decision:
-    """Return whether f is defined and f >= 0 for every real value of `name`.
+    """Return the decision whether f is defined and f >= 0 for every real value of `name`.
 
-    Parameters
-    ----------
-    f : a tree whose only name is `name`.
-    budget : derivatives on windows to look at.
-
-    Returns
-    -------
-    Decision
-        PROVED is a theorem.  REFUTED gives a rational number at which f < 0.
+    PROVED is a theorem; REFUTED has a rational number at which f < 0.  At most `budget` derivatives
+    on windows are evaluated.
     """
     if others := [other for other in names(f) if other != name]:
         return Decision(Verdict.OPEN, reason=f"depends on {', '.join(others)} too")
@@ -77,7 +69,7 @@ def decide_sign(f: Expr, name: str, budget: int = BUDGET) -> Decision:
 
 
 def _at_points(f: Expr) -> Decision | None:
-    """Return a refutation by a simple number, or that f may have no value at one of them."""
+    """Return REFUTED if f < 0 at a simple number, OPEN if f may have no value at one, else None."""
     gaps = []
     for x in (ZERO, *(side * step for step in STEPS for side in (1, -1))):
         found = value(f, x)
@@ -91,7 +83,7 @@ def _at_points(f: Expr) -> Decision | None:
 
 
 def _on_rays(f: Expr, name: str, budget: int) -> Decision:
-    """Prove f >= 0 at zero, and on the rays to both sides of it."""
+    """Return the decision on f >= 0 at zero and on both rays."""
     reasons: list[str] = []
     shown: list[Windows] = []
     at_zero = value(f, ZERO)
@@ -109,12 +101,13 @@ def _on_rays(f: Expr, name: str, budget: int) -> Decision:
 
 
 def _not_below(x: Fraction) -> float:
+    """Return a double >= x."""
     near = float(x)
     return near if near >= x else math.nextafter(near, INF)
 
 
 def _search(f: Expr, name: str, side: int, budget: int) -> tuple[Decision, int]:
-    """Return the decision on the ray x = side*t, t > 0, and what is left of the budget."""
+    """Return the decision on the ray x = side*t, t > 0, and the rest of the budget."""
     tree, pieces = recentred(f, ZERO, side), [(0.0, INF)]
     undecided: list[str] = []
     shown: list[tuple[float, float, int]] = []
@@ -146,7 +139,7 @@ def _search(f: Expr, name: str, side: int, budget: int) -> tuple[Decision, int]:
 
 
 def _order(tree: Expr, a: float, b: float) -> tuple[int | None, int]:
-    """Return how many derivatives show f >= 0 on a < t <= b, if any do, and how many were tried."""
+    """Return the number of derivatives that show f >= 0 on a < t <= b, or None, and the work."""
     at_an_end = (a == 0 and b <= NEAR) or (a >= FAR and b == INF)
     work = 0
     for order in MORE_ORDERS if at_an_end else ORDERS:
@@ -166,10 +159,7 @@ def _middle(a: float, b: float) -> float:
 
 
 def _touching(f: Expr, side: int, a: float, b: float) -> tuple[Windows, ...] | None:
-    """Return how f >= 0 is shown from the simplest number in a <= t <= b to both sides, or None.
-
-    Where f touches zero at that number, the jets there are exact.
-    """
+    """Return windows that show f >= 0 on both sides of the simplest number in [a, b], or None."""
     middle = side * _simplest(a, b)
     found = value(f, middle)
     if found is None or found.lo < 0:
@@ -185,7 +175,7 @@ def _touching(f: Expr, side: int, a: float, b: float) -> tuple[Windows, ...] | N
 
 
 def _beside(f: Expr, centre: Fraction, side: int, length: float) -> Windows | None:
-    """Return how f >= 0 is shown on 0 < t <= length, after a few cuts at most, or None."""
+    """Return windows that show f >= 0 on 0 < t <= length, after a few cuts at most, or None."""
     tree = recentred(f, centre, side)
     pieces = [(0.0, length)]
     shown: list[tuple[float, float, int]] = []
@@ -202,16 +192,16 @@ def _beside(f: Expr, centre: Fraction, side: int, length: float) -> Windows | No
 
 
 def _simplest(a: float, b: float) -> Fraction:
-    """Return the number of smallest denominator in [a, b]; next to infinity, a whole number."""
+    """Return the number of smallest denominator in [a, b], an integer if b is infinite."""
     if b == INF:
         return Fraction(math.floor(a) + 1)
     return _between(Fraction(a), Fraction(b))
 
 
 def _between(a: Fraction, b: Fraction) -> Fraction:
-    """Return the simplest fraction of [a, b], 0 <= a, by the continued fraction of its ends."""
-    whole = Fraction(math.ceil(a))
-    if whole <= b:
-        return whole
+    """Return the simplest fraction in [a, b], 0 <= a, by the continued fraction of its ends."""
+    integer = Fraction(math.ceil(a))
+    if integer <= b:
+        return integer
     below = Fraction(math.floor(a))
     return below + 1 / _between(1 / (b - below), 1 / (a - below))

@@ -1,14 +1,15 @@
-"""Where the values of a law lie on an interval of its one letter: sharp enough to tell signs.
+"""Enclosures of a law on an interval of its one letter, sharp enough to decide signs.
 
 Input: a tree in one name, and a window a < t <= b of that name.  Output: an `Enclosure`: the jet on
-the window, and the jets of its limits at both ends.  At every part of the tree a coefficient whose
-derivative has one sign is monotone there, so it lies between its limits at the ends; that undoes
-most of the cancellation that intervals suffer from.
+the window, and the jets of its limits at both ends.  In every part of the tree, a coefficient whose
+derivative has one sign is monotone and lies between its limits at the ends; that undoes most of the
+cancellation in interval arithmetic.
 """
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial, reduce
 from typing import final
 
 from piezo_sym.expressions.calculus import choices, rule
@@ -24,7 +25,7 @@ from piezo_sym.proofs.signs.shift import vanishes
 @final
 @dataclass(frozen=True, slots=True)
 class Window:
-    """The reals t with lo < t <= hi, 0 <= lo; derivatives up to `order` are looked at."""
+    """The reals t with lo < t <= hi, 0 <= lo; derivatives up to `order` are evaluated."""
 
     lo: float
     hi: float
@@ -39,7 +40,7 @@ class Enclosure:
     Attributes
     ----------
     inner : its jet on the window.
-    left, right : jets of its one-sided limits at lo and hi; shorter, or empty, if not known.
+    left, right : jets of its one-sided limits at lo and hi, as long as they are known.
     growth : the logarithmic derivative f'/f on the window (almost everywhere, if f is only
         Lipschitz); None if not known.
     """
@@ -51,7 +52,7 @@ class Enclosure:
 
 
 def enclose(tree: Expr, window: Window) -> Enclosure:
-    """Return where a tree and its derivatives lie on a window of its only name."""
+    """Return the enclosure of a tree and its derivatives on a window of its only name."""
     order = window.order
     variable = Enclosure(
         _variable(iv.interval(window.lo, window.hi, nonzero=True), order),
@@ -62,7 +63,7 @@ def enclose(tree: Expr, window: Window) -> Enclosure:
 
 
 def value(tree: Expr, at: Fraction) -> Interval | None:
-    """Return where the value of a tree at a number lies; None if it is not known to have one."""
+    """Return an enclosure of a tree's value at a number; None if it is not known to have one."""
     found = _enclose(tree, Enclosure((iv.rational(at),)), 0).inner
     return found[0] if found else None
 
@@ -72,7 +73,7 @@ def _variable(at: Interval, order: int) -> Jet:
 
 
 def _enclose(node: Expr, x: Enclosure, order: int) -> Enclosure:
-    """Return the enclosure of a tree, that of its only name being `x`."""
+    """Return the enclosure of a tree for the enclosure `x` of its only name."""
 
     def of(part: Expr) -> Enclosure:
         return _enclose(part, x, order)
@@ -95,7 +96,7 @@ def _enclose(node: Expr, x: Enclosure, order: int) -> Enclosure:
             return _power(of(base), exponent)
         case Call(function, args) if function in KINKED:
             return KINKED[function](*map(of, args))
-        case Call("pow"):  # of an exponent with a name of its own nothing is known here
+        case Call("pow"):  # not known for an exponent that is no number
             return Enclosure(())
         case Call(function, args) if RECORDS[function].smooth:
             return _smooth(function, of(args[0]))
@@ -109,14 +110,11 @@ def _enclose(node: Expr, x: Enclosure, order: int) -> Enclosure:
 
 
 def _sum(parts: list[Enclosure]) -> Enclosure:
-    total = parts[0]
-    for part in parts[1:]:
-        total = _each(jets.plus, total, part)
-    return total
+    return reduce(partial(_lifted, jets.plus), parts)
 
 
 def _cancelled(total: Enclosure, tree: Expr, x: Enclosure) -> Enclosure:
-    """Return a sum as zero at its left end or one point if its terms cancel and none jumps."""
+    """Return a sum with an exact zero at its left end, or its point, if its terms cancel there."""
     if x.left and _cancels(total.left, tree, x.left[0]):
         left = (iv.ZERO, *total.left[1:])
         return Enclosure(_sharpened(total.inner, left, total.right), left, total.right)
@@ -126,13 +124,13 @@ def _cancelled(total: Enclosure, tree: Expr, x: Enclosure) -> Enclosure:
 
 
 def _cancels(jet: Jet, tree: Expr, at: Interval) -> bool:
-    """Return whether a limit that may be zero is exactly zero."""
+    """Return whether a limit whose enclosure contains zero is exactly zero."""
     vague = jet and jet[0].exact is None and jet[0].lo <= 0 <= jet[0].hi
     return bool(vague) and at.exact is not None and vanishes(tree, at.exact)
 
 
-def _each(operation: Callable[..., Jet], *parts: Enclosure) -> Enclosure:
-    """Return an operation on jets done on the window and at its ends, sharpened."""
+def _lifted(operation: Callable[..., Jet], *parts: Enclosure) -> Enclosure:
+    """Return an operation on jets applied on the window and at its ends, sharpened."""
     inner = operation(*(part.inner for part in parts))
     left = operation(*(part.left for part in parts))
     right = operation(*(part.right for part in parts))
@@ -140,11 +138,11 @@ def _each(operation: Callable[..., Jet], *parts: Enclosure) -> Enclosure:
 
 
 def _sharpened(inner: Jet, left: Jet, right: Jet) -> Jet:
-    """Narrow each coefficient to the values between its limits at the ends where it is monotone.
+    """Return a jet with each monotone coefficient narrowed to between its limits at the ends.
 
-    A function that is locally Lipschitz in a < t < b, with f' >= 0 almost everywhere, does not
-    decrease there, so it lies between its limits at a and b; where f' > 0, it is above its limit
-    at a.  Likewise downward.  The highest derivative comes first: it sharpens the next.
+    A function that is locally Lipschitz in a < t < b with f' >= 0 almost everywhere does not
+    decrease, so it lies between its limits at a and b; where f' > 0, it is above its limit at a.
+    Likewise downward.  The highest derivative comes first, as it sharpens the next.
     """
     found = list(inner)
     for k in reversed(range(len(found) - 1)):
@@ -168,7 +166,7 @@ def _product(a: Enclosure, b: Enclosure) -> Enclosure:
     """Return a*b; (ab)'/(ab) = a'/a + b'/b."""
     first, second = _growth(a), _growth(b)
     growth = None if first is None or second is None else iv.plus(first, second)
-    return _grown(_each(jets.times, a, b), growth)
+    return _grown(_lifted(jets.times, a, b), growth)
 
 
 def _power(a: Enclosure, exponent: Fraction) -> Enclosure:
@@ -176,11 +174,11 @@ def _power(a: Enclosure, exponent: Fraction) -> Enclosure:
     growth = _growth(a)
     if growth is not None:
         growth = iv.times(iv.rational(exponent), growth)
-    return _grown(_each(lambda jet: jets.power(jet, exponent), a), growth)
+    return _grown(_lifted(lambda jet: jets.power(jet, exponent), a), growth)
 
 
 def _growth(a: Enclosure) -> Interval | None:
-    """Return f'/f, where f keeps to one side of zero."""
+    """Return f'/f, or None if f may be zero."""
     below = iv.inverse(a.inner[0]) if len(a.inner) > 1 else None
     if a.growth is not None or below is None:
         return a.growth
@@ -188,10 +186,10 @@ def _growth(a: Enclosure) -> Interval | None:
 
 
 def _grown(a: Enclosure, growth: Interval | None) -> Enclosure:
-    """Return a product, sharpened by its growth: f' = f (f'/f), and f' >= 0 makes f monotone.
+    """Return a product sharpened by its growth: f' = f (f'/f), and f' >= 0 makes f monotone.
 
-    Interval products of f' itself would not see the sign of x exp(-x) far out: both of its terms
-    are of the kind 0 times infinity.
+    The sum of products for f' would not show the sign of x exp(-x) far out: both of its terms are
+    0 times infinity.
     """
     if growth is None or len(a.inner) < 2:
         return Enclosure(a.inner, a.left, a.right, growth)
@@ -202,17 +200,17 @@ def _grown(a: Enclosure, growth: Interval | None) -> Enclosure:
 
 
 def _smooth(function: str, arg: Enclosure) -> Enclosure:
-    found = _each(lambda jet: jets.applied(function, jet), arg)
+    found = _lifted(lambda jet: jets.applied(function, jet), arg)
     growth = arg.inner[1] if function == "exp" and len(arg.inner) > 1 else None
     return _grown(found, growth)  # exp(a)'/exp(a) = a'
 
 
 def _minus(a: Enclosure) -> Enclosure:
-    return replace(_each(jets.minus, a), growth=a.growth)
+    return replace(_lifted(jets.minus, a), growth=a.growth)
 
 
 def _absolute(z: Enclosure) -> Enclosure:
-    """Return abs(z), with the branch that holds on the window; else it is known to be Lipschitz."""
+    """Return abs(z) by the branch taken on the window; with a kink inside, as Lipschitz."""
     if not z.inner or z.inner[0].lo >= 0:
         return z
     if z.inner[0].hi <= 0:
@@ -223,7 +221,7 @@ def _absolute(z: Enclosure) -> Enclosure:
 
 
 def _sign(z: Enclosure) -> Enclosure:
-    """Return sign(z); where z may be zero it may jump, so that no limit is known."""
+    """Return sign(z); no limits where z may be zero, as it may jump."""
     if not z.inner:
         return z
     at = z.inner[0]
@@ -234,7 +232,7 @@ def _sign(z: Enclosure) -> Enclosure:
 
 
 def _larger(a: Enclosure, b: Enclosure) -> Enclosure:
-    """Return max(a, b), with the branch that holds on the window; else it is Lipschitz at best."""
+    """Return max(a, b) by the branch taken on the window; with a kink inside, as Lipschitz."""
     difference = _sum([a, _minus(b)]).inner
     if not difference:
         return Enclosure(())
@@ -257,7 +255,7 @@ def _larger_value(a: Interval, b: Interval) -> Interval:
     return iv.interval(max(a.lo, b.lo), max(a.hi, b.hi))
 
 
-#: Functions with kinks that the formulas of the others are written in.
+#: Functions with kinks; the formulas of other kinked functions use these.
 KINKED: Mapping[str, Callable[..., Enclosure]] = {
     "abs": _absolute,
     "sign": _sign,
@@ -267,7 +265,7 @@ KINKED: Mapping[str, Callable[..., Enclosure]] = {
 
 
 def _choice(then: Enclosure, op: str, difference: Jet, other: Enclosure) -> Enclosure:
-    """Return the branch that is taken; if that is not known, only that it is one of the two."""
+    """Return the branch that is taken, or if that is not known, the hull of both values."""
     if not difference:
         return Enclosure(())
     holds = _holds(op, difference[0])
@@ -279,7 +277,7 @@ def _choice(then: Enclosure, op: str, difference: Jet, other: Enclosure) -> Encl
 
 
 def _holds(op: str, difference: Interval) -> bool | None:
-    """Return whether ``difference op 0`` holds on all of the window (True) or nowhere (False)."""
+    """Return whether ``difference op 0`` holds everywhere (True), nowhere (False), or neither."""
     above = _positive(difference if op in (">", "<=") else iv.minus(difference))
     if above is None or op in (">", "<"):
         return above

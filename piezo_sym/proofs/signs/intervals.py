@@ -1,9 +1,9 @@
-"""Intervals that are sure to hold the real value: arithmetic and the functions of the laws.
+"""Rigorous interval arithmetic, with the functions of laws.
 
-Input: intervals.  Output: an interval, or None where the function is not defined on all of it.
-Endpoints are doubles; each operation gives the nearest double and steps one outward unless it is
-known to be exact (IEEE 754: the error of a rounded result is less than the step to its neighbour).
-Functions are taken at endpoints by FLINT's ball arithmetic, and are monotone in between.
+Input: intervals.  Output: an interval that contains the result, or None where the function is not
+defined on all of it.  Endpoints are doubles; each operation steps one double outward from the
+rounded result unless that is exact (IEEE 754: its error is less than the step to its neighbour).
+Functions are evaluated at endpoints by FLINT's ball arithmetic, and are monotone in between.
 """
 
 import math
@@ -12,10 +12,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, final
 
+from flint import arb, fmpq
+
 from piezo_sym.expressions.functions import RECORDS, LawFunction
 
 INF = math.inf
-#: Exact values are kept as long as they have no more bits than this.
+#: Exact values with more bits are dropped.
 EXACT_BITS = 256
 
 
@@ -37,14 +39,14 @@ class Interval:
     exact: Fraction | None = None
 
     def __post_init__(self) -> None:
-        """Refuse an empty interval and NaN: a sound computation never gives either."""
+        """Raise on an empty interval or NaN, which no sound computation gives."""
         ordered = self.lo <= self.hi and self.lo < INF and self.hi > -INF
         if not ordered or (self.nonzero and self.lo == self.hi == 0):
             raise ArithmeticError(f"[{self.lo}, {self.hi}] is no interval")
 
 
 def interval(lo: float, hi: float, nonzero: bool = False) -> Interval:
-    """Return [lo, hi]; the ends may say that the quantity is not zero, or that it is one number."""
+    """Return [lo, hi], with `nonzero` and `exact` where the ends imply them."""
     exact = Fraction(lo) if lo == hi else None
     return Interval(lo, hi, nonzero or lo > 0 or hi < 0, exact)
 
@@ -56,7 +58,7 @@ def rational(value: Fraction) -> Interval:
 
 
 def _ends(value: Fraction) -> tuple[float, float]:
-    """Return the doubles next to a number, below and above; whole numbers compare faster."""
+    """Return the nearest doubles below and above a number; integers compare faster."""
     top, bottom = value.numerator, value.denominator
     try:
         near = top / bottom
@@ -73,12 +75,12 @@ ZERO, ONE = rational(Fraction(0)), rational(Fraction(1))
 
 
 def hull(a: Interval, b: Interval) -> Interval:
-    """Return the interval that holds both."""
+    """Return the smallest interval that contains both."""
     return interval(min(a.lo, b.lo), max(a.hi, b.hi), a.nonzero and b.nonzero)
 
 
 def narrowed(a: Interval, lo: float, hi: float, nonzero: bool = False) -> Interval:
-    """Return the part of `a` between lo and hi, of a quantity known to lie there too."""
+    """Return `a` cut to [lo, hi], for a quantity known to lie there, too."""
     if a.exact is not None:
         return a
     return interval(max(a.lo, lo), min(a.hi, hi), a.nonzero or nonzero)
@@ -103,8 +105,8 @@ def _sum(x: float, y: float, outward: float) -> float:
     total = x + y
     if math.isinf(x) or math.isinf(y):
         return total
-    part = total - x
-    error = (x - (total - part)) + (y - part)
+    rounded = total - x
+    error = (x - (total - rounded)) + (y - rounded)
     return total if error == 0 else math.nextafter(total, outward)
 
 
@@ -136,7 +138,7 @@ def _product(x: float, y: float, outward: float) -> float:
 
 
 def inverse(a: Interval) -> Interval | None:
-    """Return 1/a, where a keeps to one side of zero."""
+    """Return 1/a, or None if a may be zero or have both signs."""
     if a.exact:
         return rational(1 / a.exact)
     if not a.nonzero or a.lo < 0 < a.hi:
@@ -157,25 +159,25 @@ def magnitude(a: Interval) -> Interval:
 
 
 def power(a: Interval, exponent: Fraction) -> Interval | None:
-    """Return a**exponent; a fractional power only of what is not negative."""
+    """Return a**exponent; None for a fractional power if a may be negative."""
     if exponent == 0:
         return ONE
     if exponent < 0:
         below = power(a, -exponent)
         return None if below is None else inverse(below)
-    whole = exponent.denominator == 1
-    if whole and a.exact is not None and exponent <= EXACT_BITS:
+    integer = exponent.denominator == 1
+    if integer and a.exact is not None and exponent <= EXACT_BITS:
         return rational(a.exact**exponent.numerator)
-    if not whole and a.lo < 0:
+    if not integer and a.lo < 0:
         return None
     if a.exact == 0:
         return ZERO
-    base = magnitude(a) if whole and exponent.numerator % 2 == 0 else a  # now x**e is increasing
+    base = magnitude(a) if integer and exponent.numerator % 2 == 0 else a  # now x**e is increasing
     return _increasing(base, lambda x: x.root(exponent.denominator) ** exponent.numerator)
 
 
 def of(function: str, a: Interval) -> Interval | None:
-    """Return the values of a smooth function of laws; None if it has none on a part of a."""
+    """Return the values of a smooth function; None if it is not defined on all of a."""
     record = RECORDS[function]
     if record.power is not None:
         return power(a, record.power)
@@ -202,9 +204,9 @@ def _rising(a: Interval, record: LawFunction) -> tuple[float, float]:
 
 
 def _wave(a: Interval, record: LawFunction) -> Interval:
-    """Return sine or cosine: 1 at the phases `crest` + k turns, -1 half a turn later.
+    """Return sine or cosine, which is 1 at `crest` + k turns and -1 half a turn later.
 
-    Between two ends with no crest inside, the wave is at most the larger end; likewise below.
+    Without a crest between the ends, it is at most the larger value at the ends; likewise below.
     """
     if math.isinf(a.lo) or math.isinf(a.hi):
         return interval(-1.0, 1.0)
@@ -215,29 +217,21 @@ def _wave(a: Interval, record: LawFunction) -> Interval:
 
 
 def _at(x: float, record: LawFunction) -> Any:
-    return getattr(_ball(x), record.name)()
+    return getattr(arb(x), record.name)()
 
 
 def _meets(a: Interval, offset: Fraction) -> bool:
-    """Return whether some 2*pi*(offset + k), k whole, may lie in a; False is certain."""
-    from flint import arb, fmpq
-
+    """Return whether some 2*pi*(offset + k), k an integer, may lie in a; False is certain."""
     turn, start = 2 * arb.pi(), arb(fmpq(offset.numerator, offset.denominator))
-    first, last = _down(_ball(a.lo) / turn - start), _up(_ball(a.hi) / turn - start)
+    first, last = _down(arb(a.lo) / turn - start), _up(arb(a.hi) / turn - start)
     return math.ceil(first) <= math.floor(last)
 
 
 def _increasing(a: Interval, function: Callable[[Any], Any]) -> Interval:
-    """Return an increasing power, from its values at the ends; it keeps zero and infinity."""
-    low = a.lo if a.lo in (0, -INF) else _down(function(_ball(a.lo)))
-    high = a.hi if a.hi in (0, INF) else _up(function(_ball(a.hi)))
+    """Return an increasing power from its values at the ends; zero and infinity are exact."""
+    low = a.lo if a.lo in (0, -INF) else _down(function(arb(a.lo)))
+    high = a.hi if a.hi in (0, INF) else _up(function(arb(a.hi)))
     return interval(max(low, 0.0) if a.lo >= 0 else low, high, a.nonzero)
-
-
-def _ball(x: float) -> Any:
-    from flint import arb
-
-    return arb(x)
 
 
 def _down(ball: Any) -> float:
@@ -246,7 +240,7 @@ def _down(ball: Any) -> float:
     near = float(low)
     if math.isnan(near):
         raise ArithmeticError("a function was taken where it is not defined")
-    return near if _ball(near) <= low else math.nextafter(near, -INF)
+    return near if arb(near) <= low else math.nextafter(near, -INF)
 
 
 def _up(ball: Any) -> float:

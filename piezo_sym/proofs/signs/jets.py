@@ -1,9 +1,9 @@
-"""Truncated Taylor series with interval coefficients: a function and its derivatives on a set.
+"""Jets: truncated Taylor series with interval coefficients, of a function on a set.
 
-Input and output: jets.  A jet is (c_0, c_1, ...) with f^(k)/k! in c_k at every point of the set.
-Its length says how smooth the function is known to be: empty where f is not known to be defined,
-1 where only values are known, 2 where f is Lipschitz and c_1 holds f' almost everywhere, and k + 1
-where f has k continuous derivatives.  Operations keep the shorter length.
+A jet is (c_0, c_1, ...) with f^(k)/k! in c_k at every point of the set.  Its length is the known
+smoothness: 0 where f may be undefined, 1 where only values are known, 2 where f is Lipschitz and
+c_1 contains f' almost everywhere, k + 1 where f has k continuous derivatives.  Operations keep the
+shorter length.
 """
 
 from fractions import Fraction
@@ -37,21 +37,15 @@ def plus(a: Jet, b: Jet) -> Jet:
 def times(a: Jet, b: Jet) -> Jet:
     """Return a*b by Leibniz's rule: (ab)_k = sum_j a_j b_(k-j)."""
     return tuple(
-        _total([iv.times(a[j], b[k - j]) for j in range(k + 1)]) for k in range(min(len(a), len(b)))
+        reduce(iv.plus, (iv.times(a[j], b[k - j]) for j in range(k + 1)))
+        for k in range(min(len(a), len(b)))
     )
 
 
-def _total(parts: list[Interval]) -> Interval:
-    total = parts[0]
-    for part in parts[1:]:
-        total = iv.plus(total, part)
-    return total
-
-
 def composed(outer: Jet, inner: Jet) -> Jet:
-    """Return the jet of F(a): `outer` is that of F on a's values, and a - a_0 is a series.
+    """Return the jet of F(a) from the jet `outer` of F on the values of a.
 
-    F(a) = sum_m F_m (a - a_0)^m, by Horner's rule; what is beyond the length drops out.
+    F(a) = sum_m F_m (a - a_0)^m by Horner's rule, truncated at the shorter length.
     """
     length = min(len(outer), len(inner))
     if length == 0:
@@ -75,7 +69,7 @@ def power(a: Jet, exponent: Fraction) -> Jet:
 
 
 def _power(a: Interval, length: int, exponent: Fraction) -> Jet:
-    """Return binomial(e, m) a**(e - m), as far as a**(e - m) is defined."""
+    """Return binomial(e, m) a**(e - m) for m = 0, 1, ... as long as it is defined."""
     found: list[Interval] = []
     binomial = Fraction(1)
     for m in range(length):
@@ -88,7 +82,7 @@ def _power(a: Interval, length: int, exponent: Fraction) -> Jet:
 
 
 def of(function: str, a: Interval, length: int) -> Jet:
-    """Return f^(m)/m! of a smooth function of laws, by its derivative: f_(m+1) = f'_m/(m + 1)."""
+    """Return f^(m)/m! of a smooth function from its derivative: f_(m+1) = f'_m/(m + 1)."""
     record, value = RECORDS[function], iv.of(function, a)
     if record.power is not None:
         return _power(a, length, record.power)
@@ -100,7 +94,7 @@ def of(function: str, a: Interval, length: int) -> Jet:
 
 
 def _rule(node: Node, function: str, a: Interval, length: int) -> Jet:
-    """Return the jet of a record's text, in which x lies in `a` and y is `function` of it."""
+    """Return the jet of a record's rule, for x in `a` and y = function(x)."""
     match node:
         case Num(number):
             return constant(number, length - 1)

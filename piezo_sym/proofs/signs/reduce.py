@@ -1,10 +1,9 @@
 """A law with parameters, reduced to a function of one real variable.
 
-Input: a law, its letter, and what is positive.  Output: `Reduction` records.  The letter is
-measured in units of positive parameters, i = i_1*s; the law is written as a product in which all
-that does not depend on s stands in front: ``R*i + R*i_1*sin(i/i_1)`` is ``R*i_1*(s + sin(s))``.  A
-factor that depends on s and on other parameters stands in front too.  Both agree wherever the law
-is defined.
+Input: a law, its letter, and a test of positivity.  Output: `Reduction` records.  The letter is
+measured in units of positive parameters, i = i_1*s, and the law is written as prefactors times a
+function of s alone: ``R*i + R*i_1*sin(i/i_1)`` is ``R*i_1*(s + sin(s))``.  A factor that depends on
+s and on other parameters is a prefactor, too.  Both forms agree wherever the law is defined.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -48,10 +47,10 @@ class Reduction:
 
     Attributes
     ----------
-    prefactors : the other factors; their signs are not looked at here.
+    prefactors : the other factors, of any sign.
     f : a tree whose only name is `name`.
     name : the letter, which stands for s in `f`.
-    units : the positive parts, and their powers, whose product is the scale.
+    units : (positive base, power); their product is the scale.
     """
 
     prefactors: tuple[Expr, ...]
@@ -65,7 +64,7 @@ class Reduction:
         return _product(dict(self.units))
 
     def back(self, value: Fraction, values: Mapping[str, Fraction]) -> Fraction | None:
-        """Return the letter's value for a value of s and of the parameters, if it is rational."""
+        """Return the letter for values of s and of the parameters; None if it is not rational."""
         try:
             size = value_of(self.scale, values)
         except (ArithmeticError, ValueError, KeyError):
@@ -76,7 +75,7 @@ class Reduction:
 @final
 @dataclass(frozen=True, slots=True)
 class Product:
-    """``number * free * bound``: a rational, powers without the letter, a tree with it (or 1)."""
+    """``number * free * bound``: a rational, powers free of the letter, a tree with it (or 1)."""
 
     number: Fraction
     free: Powers
@@ -86,30 +85,30 @@ class Product:
 @final
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """What the letter is called, what it is measured in, and what is positive."""
+    """The letter's name, its unit as a product of powers, and the test of positivity."""
 
     letter: str
     scale: Powers
     positive: Positive
 
     def is_positive(self, powers: Powers) -> bool:
-        """Return whether a product of powers is positive because each base is."""
+        """Return whether each base of a product of powers is positive."""
         return all(map(self.positive, powers))
 
 
 def reductions(law: Expr, letter: str, positive: Positive) -> list[Reduction]:
-    """Return the reductions of a law to its letter alone, those with fewest factors outside first.
+    """Return the reductions of a law to its letter alone, fewest prefactors with the letter first.
 
-    The letter may take every real value; `positive` says if a tree without it is positive.
+    The letter may take every real value; `positive` decides for trees without it.
     """
     plain, divided, single = settings(law, letter, positive)
-    made = [_reduction(law, setting) for setting in (plain, *divided, *single)]
-    found = {reduction: outside for reduction, outside in made if reduction}
+    tried = [_reduction(law, setting) for setting in (plain, *divided, *single)]
+    found = {reduction: outside for reduction, outside in tried if reduction}
     return sorted(found, key=lambda reduction: found[reduction])
 
 
 def _reduction(law: Expr, setting: Setting) -> tuple[Reduction | None, int]:
-    """Return the reduction in one unit of the letter, and how many factors stay outside it."""
+    """Return the reduction in one unit of the letter, and the number of factors outside it."""
     inside = Product(Fraction(1), {})
     front, outside = list[Expr](), list[Expr]()
     for factor in _factors(law):
@@ -149,7 +148,7 @@ def _factors(node: Expr) -> Iterator[Expr]:
 def settings(
     law: Expr, letter: str, positive: Positive
 ) -> tuple[Setting, list[Setting], list[Setting]]:
-    """Return the units to try for the letter: none, what it is divided by, each parameter."""
+    """Return the units to try for the letter: 1, its divisors in arguments, each parameter."""
     plain = Setting(letter, {}, positive)
     divided: list[Powers] = []
     for arg in (arg for node in walk(law) for arg in _arguments(node)):
@@ -224,7 +223,7 @@ def _joined(a: Powers, b: Powers) -> Powers:
 
 
 def _raised(a: Product, exponent: Fraction, setting: Setting) -> Product:
-    """Return a**e; (x y)^e = x^e y^e for whole e, else only if x > 0."""
+    """Return a**e; (x y)^e = x^e y^e for integer e, else only if x > 0."""
     if exponent.denominator == 1:
         free = {base: e * exponent for base, e in a.free.items() if exponent}
         bound = ONE if a.bound == ONE else power(a.bound, exponent)
@@ -239,7 +238,7 @@ def _raised(a: Product, exponent: Fraction, setting: Setting) -> Product:
 
 
 def _sum(terms: list[Product]) -> Product:
-    """Return a sum, what is free of the letter taken out if all terms share it."""
+    """Return a sum, with its powers free of the letter in front if all terms share them."""
     terms = [term for term in terms if term.number]
     if not terms:
         return Product(Fraction(0), {})
@@ -254,7 +253,7 @@ def _sum(terms: list[Product]) -> Product:
 
 
 def _call(function: str, args: list[Product], setting: Setting) -> Product:
-    """Return a function of products, positive factors taken out where the function lets them."""
+    """Return a function of products, with positive factors in front if it is homogeneous."""
     record = RECORDS[function]
     if record.power is not None and args[0].number:
         return _raised(args[0], record.power, setting)
@@ -268,7 +267,7 @@ def _call(function: str, args: list[Product], setting: Setting) -> Product:
 def _shared(
     parts: list[Product], setting: Setting, *, positive: bool
 ) -> tuple[Powers, tuple[Expr, ...]]:
-    """Return the powers that all parts other than zero share, and the parts without them."""
+    """Return the powers that all nonzero parts share, and the parts without them."""
     others = [part.free for part in parts if part.number]
     free = others[0] if others else {}
     if any(other != free for other in others) or (positive and not setting.is_positive(free)):

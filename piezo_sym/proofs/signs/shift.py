@@ -1,10 +1,10 @@
-"""A law at a rational point, and seen from it, so that zeros and kinks there are exact.
+"""A law recentred at a rational point, so that zeros and kinks there are exact.
 
-Input: a tree in one name x, a rational point c, a side.  Output: the tree of t, for x = c + t or
-x = c - t.  Parts that are affine in t with rational coefficients are written as such, so that
-x - 300 at c = 300 is t itself and not a difference of rounded numbers.  Where intervals only say
-nearly, a value is exactly zero if it cancels as SymPy adds it up (`vanishes`), such as
-``log(1 + exp(0)) - log(2)``; each part has to have a value, and none to jump.
+Input: a tree in one name x, a rational point c, a side.  Output: the tree in t, for x = c + t or
+x = c - t.  Parts that are affine in t with rational coefficients are written as such: x - 300 at
+c = 300 is t itself, not a difference of rounded numbers.  Where intervals are too wide, `vanishes`
+shows by SymPy that a value such as ``log(1 + exp(0)) - log(2)`` is exactly zero; each part must
+have a value there, and none may jump.
 """
 
 from fractions import Fraction
@@ -40,9 +40,9 @@ T = Sym("t")
 
 
 def recentred(tree: Expr, centre: Fraction, side: int) -> Expr:
-    """Return a tree in one name as a tree of t, that name being ``centre + side*t``.
+    """Return a tree in one name with ``centre + side*t`` for that name.
 
-    Comparisons are written with zero on their right.
+    Comparisons get zero on the right.
     """
     match tree:
         case Sym():
@@ -52,11 +52,14 @@ def recentred(tree: Expr, centre: Fraction, side: int) -> Expr:
             branches = recentred(then, centre, side), recentred(other, centre, side)
             return If(branches[0], Cmp(op, difference, ZERO), branches[1])
     moved = rebuild(tree, lambda part: recentred(part, centre, side))
-    return _collected(moved) if isinstance(moved, Add) else _short(moved)
+    if isinstance(moved, Add):
+        return _collected(moved)
+    affine = _affine(moved)
+    return moved if affine is None else _written(affine)
 
 
 def _collected(tree: Add) -> Expr:
-    """Return a sum with all its affine terms added up first."""
+    """Return a sum with its affine terms collected in front."""
     constant, slope, others = Fraction(0), Fraction(0), list[Expr]()
     for term in _terms(tree):
         affine = _affine(term)
@@ -75,11 +78,6 @@ def _terms(tree: Expr) -> list[Expr]:
     return [tree]
 
 
-def _short(tree: Expr) -> Expr:
-    affine = _affine(tree)
-    return tree if affine is None else _written(affine)
-
-
 def _written(affine: Affine) -> Expr:
     constant, slope = affine
     if slope == 0:
@@ -89,7 +87,7 @@ def _written(affine: Affine) -> Expr:
 
 
 def _affine(tree: Expr) -> Affine | None:
-    """Return the coefficients of a tree; None if it is not affine, or is no polynomial by form."""
+    """Return the coefficients of an affine polynomial; None for other trees."""
     for part in walk(tree):
         if not isinstance(part, Num | Sym | Neg | Add | Mul):
             match part:
@@ -102,24 +100,24 @@ def _affine(tree: Expr) -> Affine | None:
     return None
 
 
-#: A function of larger numbers, or of others than rational ones, is only equal to itself.
+#: A function of larger or irrational numbers is kept as a symbol.
 LARGEST = 1000
 
 
 def vanishes(tree: Expr, at: Fraction) -> bool:
-    """Return whether a tree is sure to be zero at a number, and continuous there if defined."""
+    """Return whether a tree is certainly zero at a number, and continuous there if defined."""
     return _value(tree, at) == 0
 
 
 def rational_at(tree: Expr, at: Fraction) -> Fraction | None:
-    """Return the value of a tree at a number if it is sure to be this rational."""
+    """Return the value of a tree at a number if it is certainly rational, else None."""
     value = _value(tree, at)
     return Fraction(int(value.p), int(value.q)) if isinstance(value, sp.Rational) else None
 
 
 @lru_cache(maxsize=4096)
 def _value(node: Expr, at: Fraction) -> sp.Expr | None:
-    """Return an exact value; None where there may be a jump, or no finite value."""
+    """Return an exact value; None if there may be a jump, or no finite value."""
     match node:
         case Sym():
             return sp.Rational(at.numerator, at.denominator)
