@@ -1,7 +1,7 @@
-"""Rows about to be called PROVED are tried at many points first, to find errors of the prover.
+"""Evaluates rows that are about to be called PROVED at many points, to find errors of the prover.
 
-Input: an `IPHS`, its generated NumPy module, the rows.  Output: an `Attack` per row.  If exact
-arithmetic finds a row false at a point, `ContradictionError` is raised.
+Input: an `IPHS`, its generated NumPy module, the rows.  Output: an `Attack` per row, or
+`ContradictionError` if a row is false at a point by exact arithmetic.
 
 stage    from -> to                              in
 probe    IPHS -> laws and edges, as trees        probe
@@ -24,11 +24,7 @@ __all__ = ["POINTS", "Attack", "falsify", "module_from"]
 
 
 def falsify(
-    iphs: IPHS,
-    module: ModuleType,
-    claims: Iterable[tuple[str, str]],
-    *,
-    points: int = POINTS,
+    iphs: IPHS, module: ModuleType, claims: Iterable[tuple[str, str]], *, points: int = POINTS
 ) -> tuple[Attack, ...]:
     """Attack rows that are about to be called PROVED.
 
@@ -36,13 +32,13 @@ def falsify(
     ----------
     iphs : the system.
     module : its NumPy module, from `module_from` and the text about to be written.
-    claims : (id, element) of the rows; rows that cannot be evaluated at a point are left out.
-    points : how many points inside the domain are tried; fewer in tests of many small networks.
+    claims : (id, element) of the rows.
+    points : number of points inside the domain; fewer in tests of many small networks.
 
     Returns
     -------
     tuple of Attack
-        One per row, in their order; `points` is 0 if no point of the domain was found.
+        In the order of `claims`, one for each row that can be evaluated at a point.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What each row says, as trees that are negative where it is false.
+"""Rows as trees that are negative where the row is false.
 
 Input: a `Probe`, and a row.  Output: a `Claim`.
 """
@@ -19,17 +19,17 @@ from piezo_sym.spec.elements.ports import (
     Source,
 )
 
-#: A balance below zero by less than this part of its scale is rounding.
+#: Tolerance for rounding on a balance, relative to its scale.
 TOLERANCE = 1e-9
 
 
 @final
 @dataclass(frozen=True)
 class Inequality:
-    """A value is >= 0, or > 0 if `strict`, in every lane of a bank.
+    """The claim that a value is >= 0, or > 0 if `strict`, in every lane of a bank.
 
-    The size of `scale`, the sum of the absolute values of its terms, tells rounding from a change
-    of sign.
+    The size of `scale`, the sum of the absolute values of its terms, distinguishes rounding from a
+    change of sign.
     """
 
     name: str
@@ -47,8 +47,8 @@ class Claim:
     Attributes
     ----------
     id, element : of the row.
-    says : none of rows that say that laws have values, or do not jump.
-    where : where the row applies.
+    says : its inequalities; none for rows that laws have values, or do not jump.
+    where : conditions under which the row applies.
     zero, equal : inputs that it sets to zero, and those that it sets equal.
     """
 
@@ -61,7 +61,7 @@ class Claim:
 
     @property
     def climbs(self) -> bool:
-        """Whether value/scale varies smoothly, so that descending it makes sense."""
+        """Whether value/scale varies smoothly, so that a descent makes sense."""
         return self.id in {"passive", "conductance", "temperature"}
 
 
@@ -107,9 +107,9 @@ def _conducts(probe: Probe, element: str) -> Inequality:
 
 
 def _balance(probe: Probe, name: str, bodies: Collection[str], factor: Expr) -> Inequality:
-    """Return what bodies gain, times a factor, less what the outside loses.
+    """Return the entropy gain of bodies, times a factor, less the loss of the environment.
 
-    That is heat; with the factor 1, entropy.
+    With the factor 1 the loss is of entropy, else of heat.
     """
     circuit = probe.iphs.circuit
     rates = [Sym(f"rate {b.state}") for placed, b in circuit.of(Body) if placed.element in bodies]
@@ -126,7 +126,7 @@ def _balance(probe: Probe, name: str, bodies: Collection[str], factor: Expr) -> 
 
 
 def _coldest(probe: Probe, element: str) -> Claim:
-    """Return that the coldest body gains entropy."""
+    """Return the claim that the coldest body gains entropy."""
     circuit, hot = probe.iphs.circuit, Sym(f"temperature {element}")
     own = [(placed.element, port) for placed, port in circuit.of(Exchange) if port.body == element]
     where = [Cmp("<", hot, Sym(port.input)) for _, port in own]

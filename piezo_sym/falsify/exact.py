@@ -1,7 +1,7 @@
-"""A suspicious point evaluated again, exactly: rationals where all is, else enclosures that decide.
+"""Exact evaluation of suspicious points: in rationals where possible, else in enclosures.
 
 Input: a `Probe`, and numbers for parameters, inputs and states (floats are rationals).  Output: a
-`Point`, whose quantities are nan where `BITS` do not tell them; what breaks a row there, as text
+`Point`, whose quantities are nan where `BITS` do not suffice; what breaks a row there, as text
 (`Exact`).
 """
 
@@ -24,16 +24,16 @@ from piezo_sym.spec.tables import conditions
 
 #: Precision of enclosures: the numbers of a point may be 600 decades apart.
 BITS = 4096
-#: A point of more lanes is not computed; two at a time are attacked as well.
+#: Points with more lanes are left out; banks of two lanes are attacked as well.
 MOST_LANES = 64
-#: Rationals of more bits become enclosures.
+#: Rationals with more bits become enclosures.
 MOST_BITS = 40_000
 NAN = arb("nan")
 
 
 @final
 class Exact:
-    """Evaluates rows of one system."""
+    """Evaluates the rows of one system exactly."""
 
     def __init__(self, probe: Probe) -> None:
         self.probe = probe
@@ -41,7 +41,7 @@ class Exact:
         self.points: dict[tuple[Any, ...], Point] = {}
 
     def at(self, space: Space, values: Sequence[float | Fraction]) -> Point:
-        """Return what the system is at a point, computed once for all claims."""
+        """Return the system at a point, computed once for all claims."""
         key = (*space.counts.items(), *values)
         if key not in self.points:
             self.points[key] = Point(self, space, values)
@@ -63,7 +63,7 @@ class Exact:
 
 @final
 class Point:
-    """What a system is at a point."""
+    """The quantities of a system at a point."""
 
     def __init__(self, system: Exact, space: Space, values: Sequence[float | Fraction]) -> None:
         numbers = [exact(value) for value in values]
@@ -73,24 +73,24 @@ class Point:
         self._lanes = [_Lane(self, n) for n in range(max(self.counts.values(), default=1))]
 
     def lanes(self, bank: str | None) -> list[_Lane]:
-        """Return the lanes of a bank; without a bank, the first."""
+        """Return the lanes of a bank; the first lane without a bank."""
         return self._lanes[: self.counts[bank] if bank else 1]
 
     def values(self, rows: Iterable[Row]) -> list[Any]:
         """Return the values of trees, one per lane of each."""
         with ctx.workprec(BITS):
-            return [lane.told(tree) for tree, bank in rows for lane in self.lanes(bank)]
+            return [lane.value(tree) for tree, bank in rows for lane in self.lanes(bank)]
 
     @cached_property
     def inside(self) -> bool | None:
-        """Whether the point is in the domain; None if it cannot be told."""
+        """Whether the point is in the domain; None if undecided."""
         if max(self.counts.values(), default=0) > MOST_LANES:
             return None
-        told = {self.holds(condition) for condition in self.system.conditions}
-        return False if False in told else None if None in told else True
+        results = {self.holds(condition) for condition in self.system.conditions}
+        return False if False in results else None if None in results else True
 
     def holds(self, condition: Cmp) -> bool | None:
-        """Return whether a condition holds, in every lane; None if it cannot be told."""
+        """Return whether a condition holds in every lane; None if undecided."""
         bank = next(filter(None, map(self.bank, names(condition))), None)
         try:
             return all(holds(condition, lane, BITS) for lane in self.lanes(bank))
@@ -100,48 +100,48 @@ class Point:
             return False
 
     def bank(self, name: str) -> str | None:
-        """Return the bank of a name that has a value per lane."""
+        """Return the bank of a name, or None."""
         return self.banks[name] if name in self.banks else self.probe.defined[name][1]
 
     def undefined(self, element: str) -> bool:
-        """Return whether a law of an element has no value; without a name, one of the junction."""
-        laws = self.probe.of_element(element)
-        return any(lane.lost(tree) for tree, bank in laws for lane in self.lanes(bank))
+        """Return whether a law of an element (of the junction for "") certainly has no value."""
+        laws = self.probe.of_element.get(element, ())
+        return any(lane.is_undefined(tree) for tree, bank in laws for lane in self.lanes(bank))
 
 
 @final
 class _Lane(dict[Any, Any]):
-    """What a name, or a sum over lanes, is worth in one lane; computed when it is asked for."""
+    """The values of names and of sums over lanes in one lane, computed on demand."""
 
     def __init__(self, point: Point, number: int) -> None:
         super().__init__()
         self.point, self.number = point, number
 
     def __missing__(self, key: str | LaneSum) -> Any:
-        """Return a value, which is kept."""
-        self[key] = self._made(key)
+        """Compute a value, and keep it."""
+        self[key] = self._computed(key)
         return self[key]
 
-    def _made(self, key: str | LaneSum) -> Any:
+    def _computed(self, key: str | LaneSum) -> Any:
         point = self.point
         if isinstance(key, LaneSum):
-            return sum((lane.told(key.arg) for lane in point.lanes(key.bank)), start=fmpq(0))
+            return sum((lane.value(key.arg) for lane in point.lanes(key.bank)), start=fmpq(0))
         if key in point.numbers:
             return point.numbers[key][self.number % len(point.numbers[key])]
         if self.number and point.bank(key) is None:
             return point.lanes(None)[0][key]
-        return self.told(point.probe.defined[key][0])
+        return self.value(point.probe.defined[key][0])
 
-    def told(self, tree: Expr) -> Any:
-        """Return the value of a tree; nan if it has none or it cannot be told."""
+    def value(self, tree: Expr) -> Any:
+        """Return the value of a tree; nan if it has none or is undecided."""
         try:
             found = evaluated(tree, self, BITS)
         except (ArithmeticError, ValueError):
             return NAN
         return arb(found) if isinstance(found, fmpq) and found.height_bits() > MOST_BITS else found
 
-    def lost(self, tree: Expr) -> bool:
-        """Return whether a tree has certainly no value."""
+    def is_undefined(self, tree: Expr) -> bool:
+        """Return whether a tree certainly has no value."""
         try:
             evaluated(tree, self, BITS)
         except TooCloseError:

@@ -1,7 +1,7 @@
 """Trees at many points at once, in floats.
 
-Input: a tree, and the value of each name: an array of points, with an axis of lanes before it where
-there is a bank.  Output: an `Approx`.
+Input: a tree, and the value of each name, of shape (points) or, in a bank, (lanes, points).
+Output: an `Approx`.
 """
 
 import math
@@ -49,9 +49,9 @@ class Approx:
     Attributes
     ----------
     value : of the law.
-    size : the sum of the absolute values of its terms, so that value/size tells cancellation from a
+    size : the sum of the absolute values of its terms; value/size distinguishes cancellation from a
         change of sign.
-    lost : where it has no value on the branch taken.
+    lost : mask of the points where it has no value on the branch taken.
     """
 
     value: Any
@@ -61,13 +61,10 @@ class Approx:
 
 @final
 class Floats(dict[Expr, Approx]):
-    """Trees at points, each part computed once.
+    """The values of trees at points, each part computed once.
 
-    Parameters
-    ----------
-    given : the value of a name, or None.
-    defined : what other names stand for.
-    counts : the size of each bank.
+    `given` returns the value of a name, or None; `defined` has the trees of other names, `counts`
+    the size of each bank.
     """
 
     def __init__(
@@ -77,11 +74,11 @@ class Floats(dict[Expr, Approx]):
         self.given, self.defined, self.counts = given, defined, counts
 
     def __missing__(self, node: Expr) -> Approx:
-        """Return what was not computed yet, and keep it."""
-        self[node] = self._made(node)
+        """Compute the value of a tree, and keep it."""
+        self[node] = self._computed(node)
         return self[node]
 
-    def _made(self, node: Expr) -> Approx:
+    def _computed(self, node: Expr) -> Approx:
         match node:
             case Num(number):
                 return _plain(np.float64(number))
@@ -129,10 +126,10 @@ class Floats(dict[Expr, Approx]):
 
 
 def _power(a: Approx, exponent: Fraction) -> Approx:
-    whole = exponent.denominator == 1
-    e = exponent.numerator if whole else float(exponent)
-    lost = a.lost | (a.value == 0 if e < 0 else False) | (False if whole else a.value < 0)
-    return _plain(a.value**e, lost, a.size**e if whole and e > 0 else None)
+    integer = exponent.denominator == 1
+    e = exponent.numerator if integer else float(exponent)
+    lost = a.lost | (a.value == 0 if e < 0 else False) | (False if integer else a.value < 0)
+    return _plain(a.value**e, lost, a.size**e if integer and e > 0 else None)
 
 
 def _smooth(function: str, a: Approx) -> Approx:
@@ -146,7 +143,7 @@ def _plain(value: Any, lost: Any = False, size: Any = None) -> Approx:
 
 
 def _each(operation: Callable[..., Any], a: Approx, b: Approx) -> Approx:
-    """Return an operation on values and sizes; a choice chooses where there is no value, too."""
+    """Return an operation on values and sizes; a choice also selects where there is no value."""
     chosen = isinstance(operation, partial)
     lost = operation(a.lost, b.lost) if chosen else a.lost | b.lost
     return Approx(operation(a.value, b.value), operation(a.size, b.size), lost)

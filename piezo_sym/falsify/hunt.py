@@ -1,4 +1,4 @@
-"""The attack: rows are evaluated at blocks of points, their worst points descended and confirmed.
+"""The attack: evaluates rows at blocks of points, descends from the worst, and confirms exactly.
 
 Input: an `IPHS`, its module, rows.  Output: an `Attack` per row, or a `ContradictionError`.
 """
@@ -20,30 +20,30 @@ from piezo_sym.falsify.exact import Exact
 from piezo_sym.falsify.jumps import Sides, jump, sides_of
 from piezo_sym.falsify.points import FEW, STAGES, Draw
 from piezo_sym.falsify.probe import probe_of
-from piezo_sym.falsify.space import Array, Mask, Seen, Space
+from piezo_sym.falsify.space import Array, Evaluation, Mask, Space
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.tables import conditions
 
 POINTS = 100_000
-#: Lanes per bank of the points; and how many lanes of the spec's own values are tried, at most.
+#: Lanes per bank of a point; most lanes of the spec's own values that are tried.
 LANES, MOST_LANES = 2, 512
+#: Worst points kept of each kind, those checked exactly, steps from each in a descent, descents.
 KEPT, CHECKED, CHILDREN, DESCENTS = 8, 4, 24, 8
-#: Stands for a zero where a row says > 0: nearly right in floats, and to be evaluated exactly.
+#: Key of a zero where a row says > 0: it may be rounding, so it is evaluated exactly.
 ZERO = -1e-300
 
 
 @final
 @dataclass(frozen=True)
 class Attack:
-    """What became of a row.
+    """The result for a row.
 
     Attributes
     ----------
     id, element : of the row.
-    points : how many points inside the domain it held at, rounded down to one digit: the number is
-        published, and rounding of another processor may put a few points outside.
-    worst : values by name at a point where the row is false in floats, though not exactly; None if
-        there is none.
+    points : the number of points inside the domain at which it held, rounded down to one digit, as
+        it is published and a few points may fall outside on another processor.
+    worst : values by name at a point where the row is false in floats, though not exactly, or None.
     """
 
     id: str
@@ -55,43 +55,43 @@ class Attack:
 @final
 @dataclass(eq=False)
 class Track:
-    """The points tried for a claim: how many, and the worst ones by the way they were found."""
+    """The number of points tried for a claim, and the worst points by the way they were found."""
 
     claim: Claim
     points: int = 0
     worst: dict[str, list[tuple[float, Space, Array]]] = field(default_factory=dict)
 
-    def see(self, kind: str, seen: Seen) -> None:
+    def see(self, kind: str, seen: Evaluation) -> None:
         """Evaluate the claim at points inside the domain."""
         with np.errstate(all="ignore"):
-            says = seen.holds(self.claim.where)
-            self.points += int(says.sum())
+            applies = seen.holds(self.claim.where)
+            self.points += int(applies.sum())
             if self.claim.id == "welldef":
-                key = np.where(seen.holed(self.claim.element), -1.0, 1.0)
+                key = np.where(seen.undefined(self.claim.element), -1.0, 1.0)
             elif self.claim.says:
-                key = self._least(seen, says)
+                key = self._least(seen, applies)
             else:
                 return
         if self.claim.climbs or (key < 0).any():
             self._keep(kind, seen, np.where((key < 0) & seen.extreme, key / 1000, key))
 
-    def _least(self, seen: Seen, says: Mask) -> Array:
-        """Return the least value of the claim over its scale, 2 where it does not apply."""
-        least: Array = np.full(says.shape, 2.0)
+    def _least(self, seen: Evaluation, applies: Mask) -> Array:
+        """Return the least value/scale of the claim, and 2 where it does not apply."""
+        least: Array = np.full(applies.shape, 2.0)
         for said in self.claim.says:
             value, scale = seen.of(said.value).value, seen.of(said.scale).size
             if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
                 continue
             ratio = np.clip(value / scale, -1, 1)
-            told = np.where(np.isnan(value), 2, np.sign(value))
-            ratio = np.where(np.isnan(ratio), told, ratio)
+            sign = np.where(np.isnan(value), 2, np.sign(value))
+            ratio = np.where(np.isnan(ratio), sign, ratio)
             if not self.claim.climbs:
                 ratio = np.where(ratio < -TOLERANCE, ratio, 1)
             ratio = np.where(value == 0, ZERO if said.strict else 2, ratio)
             least = np.minimum(least, np.atleast_2d(ratio).min(axis=0))
-        return np.where(says, least, 2)
+        return np.where(applies, least, 2)
 
-    def _keep(self, kind: str, seen: Seen, key: Array) -> None:
+    def _keep(self, kind: str, seen: Evaluation, key: Array) -> None:
         """Keep the worst points found in one way."""
         known = self.worst.setdefault(kind, [])
         place = np.flatnonzero(key < (known[-1][0] if len(known) == KEPT else np.inf))
@@ -106,11 +106,7 @@ class Hunt:
     """An attack on the rows of one model."""
 
     def __init__(
-        self,
-        iphs: IPHS,
-        module: ModuleType,
-        claims: tuple[tuple[str, str], ...],
-        points: int,
+        self, iphs: IPHS, module: ModuleType, claims: tuple[tuple[str, str], ...], points: int
     ) -> None:
         self.iphs = iphs
         spec, probe = module.Parameters(), probe_of(iphs)
@@ -127,7 +123,7 @@ class Hunt:
         self.draw = Draw(self.space, np.concatenate(known, axis=1))
 
     def attacks(self) -> tuple[Attack, ...]:
-        """Return what became of each row.
+        """Return the result for each row.
 
         Raises
         ------
@@ -156,7 +152,7 @@ class Hunt:
             track.see(kind, space.at(changed if bound else self.draw.inside(changed)))
 
     def _blocks(self) -> Iterator[tuple[str, Space, Array]]:
-        """Yield points inside the domain, and how they were found."""
+        """Yield blocks of points inside the domain, with the way they were found."""
         draw, own = self.draw, self.spec.own()
         yield "own", self.spec, own[:, self.spec.at(own).inside]
         total = draw.inside(draw.known)
@@ -179,7 +175,7 @@ class Hunt:
         yield from self._descended()
 
     def _descended(self) -> Iterator[tuple[str, Space, Array]]:
-        """Yield steps from the worst points of each row, repeatedly."""
+        """Yield points near the worst points of each row, repeatedly."""
         for n in range(DESCENTS):
             climbing = (track for track in self.tracks if track.claim.climbs)
             worst = (
@@ -194,7 +190,7 @@ class Hunt:
                 yield "descended", self.space, self.draw.inside(moved)
 
     def _judged(self, track: Track, exact: Exact) -> Attack:
-        """Return what became of a row after its suspicious points were evaluated exactly."""
+        """Return the result for a row, its suspicious points having been evaluated exactly."""
         claim, rounding = track.claim, None
         most = CHECKED if claim.says else KEPT
         for key, space, point in chain(*(worst[:most] for worst in track.worst.values())):

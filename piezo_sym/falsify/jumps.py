@@ -1,7 +1,7 @@
-"""Jumps of laws: values on both sides of a kink that do not meet, however near the sides are.
+"""Jumps of laws: values on both sides of a kink that stay apart however near the sides are.
 
-Input: a row `continuous`, and brackets of kinks between neighbouring floats.  Output: the jump, as
-text, shown by exact arithmetic on two sides that are brought together.
+Input: a row `continuous`, and brackets of kinks between neighbouring floats.  Output: the jump as
+text, shown by exact arithmetic on two sides that approach each other.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from piezo_sym.expressions.exact_eval import exact as exactly
 from piezo_sym.falsify.claims import Claim
 from piezo_sym.falsify.exact import BITS, Exact, Point, text
 from piezo_sym.falsify.points import Roots
-from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Mask, Seen, Space
+from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Evaluation, Mask, Space
 
-#: Between neighbouring floats a law may change by this part of its size.
+#: Relative change of a law between neighbouring floats that is no jump.
 JUMP = 1e-6
-#: Of the kinks at which a law changes by more, so many are looked at exactly.
-MOST_LOOKED_AT = 6
+#: Number of kinks with a larger change that are evaluated exactly.
+MOST_CHECKED = 6
 #: A difference that has shrunk to this part of the largest is no jump.
 FADED = Fraction(1, 10**6)
-#: Two sides of a jump are brought together to these relative distances, and differ as before.
+#: Relative distances of the two sides; part of the difference at the first left at the second.
 NEAR, NEARER, SAME = Fraction(1, 10**40), Fraction(1, 10**80), Fraction(9, 10)
-#: The kink may lie beside the one found in floating point, by these parts of its place.
+#: Relative error of a kink found in floating point.
 WIDER = (Fraction(0), Fraction(1, 10**15), Fraction(1, 10**12))
 Values = list[Any]
 
@@ -37,12 +37,12 @@ Values = list[Any]
 def jump(
     claim: Claim, space: Space, found: Iterable[Sides], exact: Exact
 ) -> tuple[str, Array] | None:
-    """Return a jump of a law at one of the kinks found, and a point beside it; or None."""
+    """Return a jump of a law at one of the kinks found, and a point beside it, or None."""
     laws = [(what, claim.element) for what in space.probe.kinds.get(claim.element, ())]
     for sides, law in product(found, laws):
         leap, size = _leap(sides, law)
         big = np.where(sides.near, leap / size, 0)
-        for n in np.argsort(-big, kind="stable")[:MOST_LOOKED_AT]:
+        for n in np.argsort(-big, kind="stable")[:MOST_CHECKED]:
             if big[n] > JUMP:
                 ends = sides.low.points[:, n], sides.high.points[:, n]
                 change = float(leap[n]) if leap[n] < LARGEST else 0.0  # any, beside a pole
@@ -58,14 +58,14 @@ class Sides:
     """Points on both sides of kinks; `near` are kinks in states and inputs, inside the domain."""
 
     near: Mask
-    low: Seen
-    high: Seen
+    low: Evaluation
+    high: Evaluation
 
 
 def sides_of(space: Space, roots: Roots) -> Sides:
-    """Return both sides of kinks; they are the same for all rows."""
+    """Return both sides of kinks, which are the same for all rows."""
     step = roots.high - roots.low
-    # on an edge itself either branch may be
+    # on an edge itself either branch may be taken
     low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high + step))
     near = space.kinks[roots.edge] & (roots.column >= space.inputs_at)
     near &= np.abs(roots.high) < EXTREME
@@ -74,7 +74,7 @@ def sides_of(space: Space, roots: Roots) -> Sides:
 
 
 def _leap(sides: Sides, law: tuple[str, str]) -> tuple[Array, Array]:
-    """Return by how much a law changes, in the lane where it does most, and its size there."""
+    """Return the change of a law in the lane where it is largest, and the law's size there."""
     low, high = sides.low.law(*law), sides.high.law(*law)
     with np.errstate(all="ignore"):
         leap = np.nan_to_num(np.abs(high.value - low.value), nan=0, posinf=LARGEST)
@@ -110,7 +110,7 @@ def _confirmed(
 def _narrowed(
     values_at: Callable[[Fraction], Values], low: Fraction, high: Fraction
 ) -> tuple[Fraction, tuple[Fraction, Fraction]] | None:
-    """Return by how much values differ on two sides that come together, if it does not fade."""
+    """Return the difference on two approaching sides, and the sides; None if it fades."""
     scale, gaps = max(abs(low), abs(high)), []
     one, other = values_at(low), values_at(high)
     gap = most = _gap(one, other)
@@ -124,7 +124,7 @@ def _narrowed(
             calm = (
                 1000 * min(left, right) <= max(left, right) or max(left, right) > SAME * 3 * gap / 2
             )
-            if limit == NEARER and not calm:  # no step and no pole, but a swing not yet resolved
+            if limit == NEARER and not calm:  # neither step nor pole, but an unresolved oscillation
                 return None
             if left >= right:
                 high, other, gap = middle, value, left
@@ -135,14 +135,14 @@ def _narrowed(
 
 
 def _watched(claim: Claim, at: Point) -> list[Any]:
-    """Return what jumps if a law does: its values, or all rates where the law is a store's."""
+    """Return the values of a claim's law; of a store's law, all rates, which jump with it."""
     kinds = [(what, claim.element) for what in ("output", "temperature", "conductance")]
     own = [at.probe.laws[key] for key in kinds if key in at.probe.laws]
     return at.values(own[:1] or [r for n, r in at.probe.defined.items() if n.startswith("rate ")])
 
 
 def _gap(one: Values, other: Values) -> Fraction:
-    """Return the largest difference of two vectors, as a lower bound; 0 where one is not known."""
+    """Return a lower bound on the largest difference of two vectors; 0 if one is not known."""
     if not one or not other:
         return Fraction(0)
     with ctx.workprec(BITS):
@@ -150,7 +150,7 @@ def _gap(one: Values, other: Values) -> Fraction:
 
 
 def _least(gap: Any) -> Fraction:
-    """Return the least size that an enclosure allows."""
+    """Return the least absolute value in an enclosure."""
     if isinstance(gap, fmpq):
         return Fraction(int(abs(gap).p), int(gap.q))
     if not gap.is_finite():

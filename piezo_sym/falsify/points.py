@@ -1,9 +1,9 @@
-"""Points at which rows are tried; a fixed seed makes them the same on every machine.
+"""Points at which rows are evaluated; a fixed seed makes them the same on every machine.
 
-Input: a `Space` and points inside the domain to start from.  Output: more points inside it, found
-in four ways: `kinks` (an edge bisected to neighbouring floats along one column, and points beside
-it), `corners` (kinks found from kinks), `drawn` (random values in logarithmic ranges, near known
-values and near equality) and `walked` (random steps from points inside, where drawing finds few).
+Input: a `Space` and points inside the domain to start from.  Output: more points inside, found in
+four ways: `kinks` (an edge bisected to neighbouring floats along one column, and points beside it),
+`corners` (kinks found from kinks), `drawn` (random values in logarithmic ranges, near known values
+and near equality) and `walked` (random steps from points inside, where drawing finds few).
 """
 
 from collections.abc import Iterator
@@ -18,12 +18,12 @@ from piezo_sym.falsify.space import LARGEST, LEAST, Array, Index, Space
 #: With fewer points than these, drawn ones are added to those that walks start from.
 FEW = 1000
 WALKS = 40
-#: A root at zero is bracketed by these values, as products of smaller ones may underflow.
+#: A root at zero is bracketed by plus and minus this, as products of smaller values may underflow.
 TINY = 1e-280
 TABLE = 8192
-#: So many points are tried beside a root.
+#: Points evaluated beside a root.
 BESIDE = 24
-#: Edges are solved for from known points, then from points on edges; at most so often each.
+#: Edges are solved for from known points, then from points on edges; most roots per edge.
 STAGES = (("kinks", 16), ("corners", 12))
 FAR = (-290, -100, -30, -15, -9, -6)
 DECADES = (*FAR, -4, -3, -2, -1, -0.3, 0, 0.3, 1, 2, 3, 4, 6, 9, 15, 30, 100)
@@ -36,7 +36,7 @@ SIMPLE = np.array([0, 1, -1, 2, -2, 3, -3, 4, 0.5, -0.5, 0.25, 8, 10, -10, 1.5, 
 @final
 @dataclass(eq=False)
 class Roots:
-    """Where an edge changes sign along one column: neighbouring floats `low` and `high`."""
+    """Sign changes of edges along one column, between neighbouring floats `low` and `high`."""
 
     edge: Index
     column: Index
@@ -45,7 +45,7 @@ class Roots:
     high: Array
 
     def at(self, value: Array) -> Array:
-        """Return the points that have these values in their columns."""
+        """Return the base points with these values in their columns."""
         points = self.base.copy()
         points[self.column, np.arange(len(value))] = value
         return points
@@ -58,7 +58,7 @@ class Draw:
 
     Attributes
     ----------
-    space : whose points.
+    space : the space of the points.
     known : points inside the domain to start from; the first has the spec's own values.
     """
 
@@ -68,20 +68,18 @@ class Draw:
     roots: list[Roots] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        """Collect the scales of each column: 1, its known values and those of equal dimension."""
+        """Collect the scales of each column: 1, its known values, and those of equal dimension."""
         scales = [[1.0, *row] for row in np.abs(self.known).tolist()]
         for one, other in self.space.pairs.tolist():
             scales[one] += np.abs(self.known[other]).tolist()
         self.scales = [sorted({s for s in row if s > 0})[:24] for row in scales]
 
     def inside(self, points: Array) -> Array:
-        """Return those of some points that lie in the domain."""
+        """Return the points that lie in the domain."""
         step = self.space.block
         parts = [points[:, n : n + step] for n in range(0, points.shape[1], step)]
         kept = [part[:, self.space.at(part).inside] for part in parts]
         return np.concatenate([points[:, :0], *kept], axis=1)
-
-    # Kinks
 
     def kinks(self, bases: Array, most: int) -> Array:
         """Return points on edges and next to them, found along one column from each base."""
@@ -150,10 +148,8 @@ class Draw:
         ends = np.where(np.abs(ends).max(axis=0) < LEAST, [[-TINY], [TINY]], ends)
         return Roots(roots.edge, roots.column, roots.base, *ends)
 
-    # Drawing
-
     def learn(self, points: Array) -> None:
-        """Add values on edges to the scales, and some points to those to start from."""
+        """Add values on edges to the scales, and some points to the starting points."""
         roots = self.roots[-1]
         for column, value in zip(roots.column.tolist(), np.abs(roots.high).tolist(), strict=True):
             if 1e-100 < value < 1e100 and len(self.scales[column]) < 64:
@@ -166,12 +162,12 @@ class Draw:
 
     @cached_property
     def table(self) -> Array:
-        """Values to draw from per column, repeated once so that any start leaves enough of them."""
+        """Values to draw per column, stored twice in a row so that a draw may start anywhere."""
         once = np.array([self._values(column) for column in range(len(self.scales))])
         return np.concatenate([once, once], axis=1)
 
     def _values(self, column: int) -> Array:
-        """Return values to draw: scales times factors near 1 or of many decades, simple numbers."""
+        """Return values to draw: simple numbers, scales times factors near 1 or of any decade."""
         u, v = self.rng.random((2, TABLE))
         kind = np.arange(TABLE) % 16
         exponent = np.select([kind < 6, kind < 9], [4 * u - 2, 18 * u - 9], 600 * u - 300)
@@ -198,7 +194,7 @@ class Draw:
         return self._paired(points)
 
     def _paired(self, points: Array) -> Array:
-        """Set some values to others of equal dimension, or close to them."""
+        """Set some values equal, or close, to others of equal dimension."""
         pairs, rng = self.space.pairs, self.rng
         if len(pairs):
             place = np.flatnonzero(rng.random(points.shape[1]) < 0.2)
@@ -216,11 +212,8 @@ class Draw:
         for _ in range(2):
             place = (rng.integers(0, len(points), count), np.arange(count))
             drawn = self.table[place[0], rng.integers(0, TABLE, count)]
-            step = (
-                size
-                * (2 * rng.random(count) - 1)
-                * np.where(points[place] == 0, drawn, points[place])
-            )
+            unit = np.where(points[place] == 0, drawn, points[place])
+            step = size * (2 * rng.random(count) - 1) * unit
             points[place] = np.where(rng.random(count) < 0.1, drawn, points[place] + step)
         return _normal(points)
 
@@ -237,7 +230,7 @@ class Draw:
 
 
 def _normal(points: Array) -> Array:
-    """Return the points without subnormal or nearly subnormal values."""
+    """Return the points without values that are subnormal or nearly so."""
     size = np.abs(points)
     return points[:, ((size == 0) | (size >= LEAST)).all(axis=0)]
 
@@ -247,9 +240,9 @@ def _bounded(values: Array) -> Array:
 
 
 def _power(exponents: Array) -> Array:
-    """Return about 10**exponents by products alone, so that all machines give the same bits."""
-    whole = np.floor(exponents)
-    return POWERS[whole.astype(np.int64) + 300] * (1 + 9 * (exponents - whole))
+    """Return about 10**exponents by products alone, for the same bits on every machine."""
+    floor = np.floor(exponents)
+    return POWERS[floor.astype(np.int64) + 300] * (1 + 9 * (exponents - floor))
 
 
 def _key(values: Array) -> Index:

@@ -1,7 +1,7 @@
-"""What an attack evaluates besides the functions of the module: single laws, and edges.
+"""The laws and edges that an attack evaluates besides the functions of the module.
 
 Input: an `IPHS`.  Output: a `Probe`: trees in the named quantities of its program.  An edge is an
-expression near whose zeros a law may be wrong: the difference of the sides of a comparison, a bound
+expression near whose zeros a row may be false: the difference of the sides of a comparison, a bound
 of the domain, a divisor, the argument of a root, a sum, the difference of quantities of equal
 dimension.
 """
@@ -50,14 +50,14 @@ from piezo_sym.spec.elements.ports import (
     Storage,
 )
 
-#: Of more edges, those whose form was seen less often come first; fewer of large systems.
+#: Most edges, fewer for large systems; the first ones of each form are preferred.
 MOST_EDGES = 400
 
 
 @final
 @dataclass(frozen=True)
 class Edge:
-    """An expression whose zeros are searched for; at those of a `kink` a law changes branches."""
+    """An expression whose zeros are searched for; at those of a `kink` a law changes its branch."""
 
     tree: Expr
     kink: bool = False
@@ -72,12 +72,11 @@ class Probe:
     Attributes
     ----------
     iphs : the system.
-    defined : what each name stands for; among them, with a space in it, what functions of the
-        module give: the heat and the production of a process, the rate of a state, the temperature
-        of a body.
-    laws : by what they are and whose: output and effort of a process, conductance, temperature and
-        slope of a body, costate, ratio; of the element "" what the junction divides by.
-    edges : where laws may be wrong.
+    defined : the tree of each name.  Names with a space are results of the module's functions: the
+        heat and the production of a process, the rate of a state, the temperature of a body.
+    laws : by (kind, element): output and effort of a process, conductance, temperature and slope of
+        a body, costate, ratio; the divisors of the junction have the element "".
+    edges : expressions near whose zeros rows may be false.
     """
 
     iphs: IPHS
@@ -86,7 +85,7 @@ class Probe:
     edges: tuple[Edge, ...]
 
     def law(self, what: str, element: str) -> Row:
-        """Return a law, written out: what a name stands for, not the name."""
+        """Return a law, written out if it is a name."""
         return self.written(self.laws[what, element])
 
     def behind(self, tree: Expr) -> set[str]:
@@ -101,24 +100,21 @@ class Probe:
 
     @cached_property
     def produced(self) -> Expr:
-        """The entropy that all processes produce."""
+        """The entropy production of all processes."""
         rows = ((n, bank) for n, (_, bank) in self.defined.items() if n.startswith("production "))
         return add(*(LaneSum(Sym(name), bank) if bank else Sym(name) for name, bank in rows))
 
-    def of_element(self, element: str) -> list[Row]:
-        """Return the laws of an element, written out: what a name stands for, not the name."""
-        return self._of_elements.get(element, [])
-
     @cached_property
     def kinds(self) -> Mapping[str, list[str]]:
-        """The laws of each element that may jump."""
+        """The kinds of those laws of each element that may jump."""
         found: dict[str, list[str]] = {}
         for what, element in self.laws:
             found.setdefault(element, []).extend([what] if what not in {"effort", "slope"} else [])
         return found
 
     @cached_property
-    def _of_elements(self) -> Mapping[str, list[Row]]:
+    def of_element(self) -> Mapping[str, list[Row]]:
+        """The laws of each element but for efforts, written out if they are names."""
         found: dict[str, list[Row]] = {}
         for (what, element), row in self.laws.items():
             found.setdefault(element, []).extend([self.written(row)] if what != "effort" else [])
@@ -126,13 +122,13 @@ class Probe:
 
     @cached_property
     def powers(self) -> tuple[Call, ...]:
-        """The powers in laws of an exponent that is no number."""
+        """The powers in laws with an exponent that is no number."""
         parts = (part for row in self.laws.values() for part in walk(self.written(row)[0]))
         calls = (part for part in parts if isinstance(part, Call) and part.function == "pow")
         return tuple(dict.fromkeys(calls))
 
     def written(self, row: Row) -> Row:
-        """Return what a name stands for; others as they are."""
+        """Return the definition of a row that is a name; another row as it is."""
         tree, _ = row
         return self.defined.get(tree.name, row) if isinstance(tree, Sym) else row
 
@@ -151,7 +147,7 @@ class _Text(importlib.abc.InspectLoader):
 
 
 def module_from(text: str, name: str = "attacked") -> ModuleType:
-    """Return a new module made of generated text, without a file or an entry in `sys.modules`."""
+    """Return a new module of generated text, without a file or an entry in `sys.modules`."""
     spec = importlib.util.spec_from_loader(name, loader := _Text(text))
     if spec is None:
         raise ImportError(name)
@@ -179,7 +175,7 @@ def probe_of(iphs: IPHS) -> Probe:
 
 
 def _varied(found: Iterable[Edge], most: int) -> tuple[Edge, ...]:
-    """Return some edges: the first ones of each form, if there are too many."""
+    """Return at most `most` edges, preferring the first ones of each form."""
     seen, ranked = Counter[Expr](), list[tuple[int, Edge]]()
     for edge in found:
         form = rename(edge.tree, {name: str(n) for n, name in enumerate(names(edge.tree))})
@@ -190,7 +186,7 @@ def _varied(found: Iterable[Edge], most: int) -> tuple[Edge, ...]:
     return tuple(kept[:most])
 
 
-#: What functions of the module give, by what it is called here; and of which of its records.
+#: The module's function behind each kind of name with a space, and the table of its rows.
 RESULTS = {
     "heat": ("heat", "PROCESSES"),
     "production": ("entropy_production", "PROCESSES"),
@@ -207,7 +203,7 @@ def _rows(q: Quantities) -> Iterator[tuple[str, Row]]:
 
 
 def _laws(q: Quantities) -> Iterator[tuple[tuple[str, str], Expr]]:
-    """Yield every law, the effort of a resistor and the slope of a body."""
+    """Yield every law, the effort of each resistor, and the slope of each temperature."""
     forces = iter(zip(q.forces, q.outputs, strict=True))
     for placed in q.iphs.circuit.ports:
         element, port = placed.element, placed.port

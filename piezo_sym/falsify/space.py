@@ -1,4 +1,4 @@
-"""Points of a model as one array, and its module, laws and edges at them.
+"""Points of a model as one array, and its functions, laws and edges at these points.
 
 Input: a module, a probe, bank sizes.  Output: a `Space`.  Its n points are an array of shape
 (columns, n); the columns are all parameters, inputs and states, one per lane of a bank.
@@ -29,13 +29,13 @@ Key = TypeVar("Key")
 
 #: Bounds on the absolute values of a point other than 0; beyond EXTREME products overflow.
 LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
-#: A power with a smaller exponent hardly changes over tens of decades of its base.
+#: A power with a smaller exponent hardly changes over tens of decades, and seems to jump at zero.
 STEEP = 0.01
 #: States times points that the module evaluates together; its `rhs` splits larger arrays.
 BLOCK = 100_000
-#: States times points at which trees are evaluated together: calls of NumPy cost less per point.
+#: States times points at which trees are evaluated together, to save calls of NumPy.
 TREES = 3 * BLOCK
-#: Of large systems fewer points together would cost as much; and points times columns squared.
+#: Fewest points evaluated together; most points times the square of the number of columns.
 FEWEST, MOST = 1024, 10**9
 
 
@@ -80,7 +80,7 @@ class Space:
 
     @cached_property
     def positive(self) -> Mask:
-        """Which columns a condition of the domain keeps from being negative."""
+        """Mask of the columns that a condition of the domain keeps from being negative."""
         found = set()
         for condition in conditions(self.probe.iphs.model):
             match greater(condition.tree):
@@ -101,21 +101,21 @@ class Space:
 
     @cached_property
     def block(self) -> int:
-        """How many points are evaluated together."""
+        """The number of points evaluated together."""
         return max(FEWEST, min(8192, TREES // max(1, len(self.columns) - self.states_at)))
 
     @cached_property
     def most(self) -> int:
-        """How many points are tried at most: fewer of systems with more than 100 columns."""
+        """The most points evaluated, fewer for systems with more than 100 columns."""
         return max(2 * FEWEST, MOST // len(self.columns) ** 2)
 
     def lanes(self, bank: str | None) -> int:
-        """Return how many lanes a bank has, 1 for none."""
+        """Return the number of lanes of a bank, 1 for None."""
         return self.counts[bank] if bank else 1
 
     @cached_property
     def rows(self) -> Mapping[str, Mapping[str, slice]]:
-        """The rows of each state, process and body in results, which have one row per lane."""
+        """The rows of each state, process and body in results, one per lane."""
         return {
             table: self._slices((r.name, r.bank) for r in getattr(self.module, table))
             for table in ("STATES", "PROCESSES", "BODIES")
@@ -123,7 +123,7 @@ class Space:
 
     @cached_property
     def edges_by_column(self) -> Mapping[str, tuple[int, ...]]:
-        """The edges that depend on a column's name; of what the module computes it may be any."""
+        """The numbers of the edges that may depend on each column; all may through the module."""
         found: dict[str, tuple[int, ...]] = {}
         for n, edge in enumerate(self.probe.edges):
             behind = self.probe.behind(edge.tree)
@@ -138,7 +138,7 @@ class Space:
 
     @cached_property
     def kinks(self) -> Mask:
-        """Which rows of the edges are kinks."""
+        """Mask of the rows of edges that are kinks."""
         edges = self.probe.edges
         return np.array([e.kink for e in edges for _ in range(self.lanes(e.bank))], dtype=bool)
 
@@ -165,12 +165,12 @@ class Space:
         parts = ((self._given[name], lane) for name, lane in self.columns)
         return np.array([[part[(first + lane) % len(part)]] for part, lane in parts])
 
-    def at(self, points: Array) -> Seen:
-        """Return the functions evaluated at points."""
-        return Seen(self, points)
+    def at(self, points: Array) -> Evaluation:
+        """Return the evaluation of the module and the probe at points."""
+        return Evaluation(self, points)
 
     def split(self, points: Array) -> tuple[Array, Array, Any]:
-        """Return points as states, inputs and parameters of the module."""
+        """Return points as (states, inputs, parameters) for the module."""
         values: dict[str, Any] = {f"{bank}_count": count for bank, count in self.counts.items()}
         for field in self.module.PARAMETERS:
             columns = self.columns_of[field.name]
@@ -188,8 +188,8 @@ class Space:
 
 
 @final
-class Seen:
-    """The module's functions, single laws and edges at points, computed when they are asked for."""
+class Evaluation:
+    """The module's functions, single laws and edges at points, computed on demand."""
 
     def __init__(self, space: Space, points: Array) -> None:
         self.space = space
@@ -214,11 +214,11 @@ class Seen:
 
     @cached_property
     def edges(self) -> Array:
-        """The values of all edges; one with a value per lane has a row for each."""
+        """The values of all edges, one row per edge and lane."""
         return self.some_edges(range(len(self.space.probe.edges)))
 
     def some_edges(self, numbers: Iterable[int]) -> Array:
-        """Return the values of some edges, as `edges` gives them of all."""
+        """Return the values of the edges with some numbers, one row per edge and lane."""
         edges, count = self.space.probe.edges, self.points.shape[1]
         rows = (
             np.broadcast_to(self.of(edges[n].tree).value, (self.space.lanes(edges[n].bank), count))
@@ -240,14 +240,14 @@ class Seen:
             return self.values[tree]
 
     def holds(self, conditions: Iterable[Cmp]) -> Mask:
-        """Return where all of some comparisons hold."""
+        """Return the mask of points where all conditions hold."""
         found: Mask = np.ones(self.points.shape[1], dtype=bool)
         for c in conditions:
             found &= COMPARED[c.op](self.of(c.left).value, self.of(c.right).value)
         return found
 
     def _given(self, name: str) -> Array | None:
-        """Return a value of the points or of a function of the module, None for other names."""
+        """Return the values of a column or of a result of the module; None for other names."""
         what, _, label = name.partition(" ")
         if label:
             function, table = RESULTS[what]
@@ -261,24 +261,24 @@ class Seen:
 
     @property
     def inside(self) -> Mask:
-        """Which points lie in the domain."""
+        """Mask of the points that lie in the domain."""
         floors = [[0.0] if c.strict else [-np.nextafter(0, 1)] for c in self.space.module.DOMAIN]
         found: Mask = np.all(self.margins > np.reshape(floors, (-1, 1)), axis=0)
         return found
 
     @cached_property
     def extreme(self) -> Mask:
-        """Which points have a value so large or small that products with it overflow."""
+        """Mask of the points with a value so large or small that products with it overflow."""
         size = np.abs(self.points)
         found: Mask = np.any((size > EXTREME) | ((size > 0) & (size < 1 / EXTREME)), axis=0)
         return found
 
     @cached_property
     def out_of_range(self) -> Mask:
-        """Which points have a value or a temperature whose products overflow.
+        """Mask of the points with a value or a temperature whose products overflow.
 
-        A nan there means nothing.  As a temperature is exponential in the entropy as a rule, it may
-        overflow at plain values.
+        A nan there means nothing.  Temperatures are exponential in the entropy as a rule, so they
+        may overflow at moderate values.
         """
         size = np.abs(self.temperatures)
         found: Mask = self.extreme | np.any((size > EXTREME) | (size < 1 / EXTREME), axis=0)
@@ -286,15 +286,15 @@ class Seen:
 
     @cached_property
     def steep(self) -> Mask:
-        """Which points have a power whose exponent is so small that it seems to jump at zero."""
+        """Mask of the points with a power of so small an exponent that it seems to jump at zero."""
         found: Mask = np.zeros(self.points.shape[1], dtype=bool)
         for power in self.space.probe.powers:
             found |= np.atleast_2d(self.values[power.args[1]].value < STEEP).any(axis=0)
         return found
 
-    def holed(self, element: str) -> Mask:
-        """Return where an element's laws, or without a name the junction's, have no value."""
+    def undefined(self, element: str) -> Mask:
+        """Return where a law of an element, or of the junction for "", is undefined."""
         found: Mask = np.zeros(self.points.shape[1], dtype=bool)
-        for tree, _ in self.space.probe.of_element(element):
+        for tree, _ in self.space.probe.of_element.get(element, ()):
             found |= np.atleast_2d(self.of(tree).lost).any(axis=0)
         return found
