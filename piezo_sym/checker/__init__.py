@@ -1,4 +1,4 @@
-"""The checker: a second program that shares nothing with the package but the spec's text.
+"""The checker: a second program, which has only the spec's text in common with the package.
 
 Run as ``python -I piezo_sym/checker SPEC.toml PROOFS.json``.
 """

@@ -1,7 +1,7 @@
 """The checker's command: ``python -I piezo_sym/checker SPEC.toml PROOFS.json``.
 
-Input: two files.  Output: a line per row, a count; exit 0 if all are confirmed, 1 if not, 2 if the
-input is bad.
+Input: two files.  Output: a line per row and a count; exit status 0 if all rows are confirmed, 1 if
+not, 2 if the input is bad.
 """
 
 import json
@@ -14,10 +14,10 @@ SECONDS, BYTES = 900, 6 * 2**30
 
 
 def main(arguments: list[str]) -> int:
-    """Print what is confirmed of a spec; return the exit status."""
+    """Print which rows of a spec are confirmed; return the exit status."""
     resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
     resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
-    if not __package__:  # run as a folder: it becomes a package that hides no other module
+    if not __package__:  # run as a folder: import it as a package, so that it hides no other module
         folder = str(Path(__file__).parent)
         sys.path[:] = [*(path for path in sys.path if path != folder), str(Path(folder).parent)]
     try:

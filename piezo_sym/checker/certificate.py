@@ -1,9 +1,9 @@
-"""Certificates of laws decided by intervals: checked again, with bounds of the checker's own.
+"""Checks the certificates of laws decided by intervals, with the checker's own bounds.
 
 Input: a law, and the cases of its certificate.  Output: `InputError` if it does not hold.  Where
 the guards of a case hold, the law is a sum of terms: prefactor*f(s) with letter = scale*s, or
-prefactor/letter.  cvc5 shows that the cases cover the domain, and the prefactor's sign; `signs`
-that f(s)*s has it on windows lo < t <= hi of s = centre + side*t, which cover the line.
+prefactor/letter.  cvc5 shows that the cases cover the domain, and the sign of the prefactor;
+`signs` shows that of f(s)*s on windows lo < t <= hi of s = centre + side*t, which cover the line.
 """
 
 from collections.abc import Mapping
@@ -13,8 +13,8 @@ from typing import Any
 
 from . import laws
 from .field import Field
-from .laws import InputError, Node, compare, need, num, put, sym, symbols
-from .prover import Claim, Prover, partial, taken, true
+from .laws import InputError, Node, compare, need, num, subs, sym, symbols
+from .prover import Claim, Prover, guarded, partial, true
 from .signs import shown
 from .spec import Element, Spec
 
@@ -22,7 +22,7 @@ MOST_WINDOWS, MOST_CASES, FARTHEST, NARROWEST = 3000, 64, 2**12, Fraction(1, 2**
 
 
 def check_certificate(spec: Spec, element: Element, cases: Any, prover: Prover) -> None:
-    """Refuse a certificate that does not show that a law takes power in."""
+    """Raise `InputError` unless a certificate shows that a law takes power in."""
     try:
         _Certificate(spec, element, prover).check(cases)
     except (KeyError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
@@ -33,29 +33,29 @@ class _Certificate:
     def __init__(self, spec: Spec, element: Element, prover: Prover) -> None:
         self.law, self.prover, self.left = element.law or num(0), prover, MOST_WINDOWS
         self.real, self.letter = Prover(()), ("z", element.name)
-        # the letter has a _ where something of the spec is called so
+        # the letter has a _ where the spec uses its name otherwise
         meanings = {element.letter: self.letter, **spec.words, f"{element.letter}_": self.letter}
         self.words = {word: sym(meaning) for word, meaning in meanings.items()}
 
     def read(self, text: str) -> Node:
-        """Return a text of the certificate in the symbols of the spec."""
+        """Return the tree of a text of the certificate, in the symbols of the spec."""
         tree = laws.parse(text)
         need(symbols(tree).keys() <= self.words.keys(), "its certificate has other names")
-        return put(tree, self.words)
+        return subs(tree, self.words)
 
     def check(self, cases: Any) -> None:
         need(len(cases) <= MOST_CASES, "its certificate has too many cases")
         guards = [tuple(self.read(text) for text in case["guards"]) for case in cases]
         free = all(g.op == "cmp" and self.letter not in symbols(g) for own in guards for g in own)
-        held = Node("+", (num(0), *(taken(own, num(1)) for own in guards)))
+        held = Node("+", (num(0), *(guarded(own, num(1)) for own in guards)))
         covered = free and self.prover.proves(compare(held, ">"))
         need(covered, "its cases are not shown to cover the domain")
         for own, case in zip(guards, cases, strict=True):
-            if not self.prover.proves(compare(num(1), "<"), own):  # it holds somewhere
+            if not self.prover.proves(compare(num(1), "<"), own):  # the case may not be empty
                 self._case(case["terms"], own)
 
     def _case(self, terms: Any, guards: tuple[Node, ...]) -> None:
-        """Refuse terms that do not add up to the law, or are not shown to take power in."""
+        """Raise unless terms add up to the law and each is shown to take power in."""
 
         def known(condition: Node) -> bool:
             return self.letter not in symbols(condition) and self.prover.proves(condition, guards)
@@ -63,17 +63,17 @@ class _Certificate:
         field, claims = Field(known, scales=True), list[Claim]()
         parts = (num(0), *(self.read(term["law"]) for term in terms))
         need(field.same(self.law, Node("+", parts)), "its terms are not shown to make up the law")
-        # and so do products that are shown to have values: f and all in front of it
+        # so must prefactor*f(s), whose values are shown to exist
         products = (num(0), *(self._product(term, claims) for term in terms))
         need(field.same(self.law, Node("+", products)), "a term is not shown to be prefactor*f(s)")
-        good = all(self.prover.proves(claim, (*guards, *path)) for claim, path in claims)
-        need(good, "the sign of a prefactor or scale is not shown")
+        follow = all(self.prover.proves(claim, (*guards, *path)) for claim, path in claims)
+        need(follow, "the sign of a prefactor or scale is not shown")
         for term in terms:
             if term["f"] is not None:
                 self._rays(Node("*", (num(term["sign"]), laws.parse(term["f"]))), term["rays"])
 
     def _product(self, term: Mapping[str, Any], claims: list[Claim]) -> Node:
-        """Return prefactor*f(letter/scale), or prefactor/letter; book what is to be shown of it."""
+        """Return prefactor*f(letter/scale), or prefactor/letter; append the claims on it."""
         front, way, z = self.read(term["prefactor"]), term["sign"], sym(self.letter)
         need(way in (1, -1), "a term has no sign")
         claims += [*partial(front), true(front, ">=" if way > 0 else "<=")]
@@ -87,25 +87,25 @@ class _Certificate:
             z = Node("/", (z, Node("**", (base,), _number(power))))
         f = laws.parse(term["f"])
         need(set(symbols(f)) <= {"s"}, "f is not of s alone")
-        return Node("*", (front, put(f, {"s": z})))
+        return Node("*", (front, subs(f, {"s": z})))
 
     def _rays(self, f: Node, rays: Any) -> None:
-        """Refuse f if f(s)*s >= 0 is not shown for all real s: on windows that cover them."""
+        """Raise unless f(s)*s >= 0 is shown on windows that cover all real s."""
         covered, reached = list[Any](), -inf
         for ray in rays:
             centre, side = _number(ray["centre"]), int(ray["side"])
             for low, high, _ in [("0", "0", 0), *ray["windows"]]:
                 lo, hi = _number(low), inf if high == "inf" else _number(high)
-                inside = side in (1, -1) and 0 <= lo <= hi
-                good = inside and self._window(f, centre, side, lo, hi)
-                need(good, f"f is not shown to have its sign from {lo} to {hi} of {centre}")
+                valid = side in (1, -1) and 0 <= lo <= hi
+                signed = valid and self._window(f, centre, side, lo, hi)
+                need(signed, f"f is not shown to have its sign from {lo} to {hi} of {centre}")
                 covered.append(tuple(sorted((centre + side * lo, centre + side * hi))))
         for lo, hi in sorted(covered):
             reached = max(reached, hi) if lo <= reached else reached
         need(reached == inf, "the windows do not cover the line")
 
     def _window(self, f: Node, centre: Fraction, side: int, lo: Fraction, hi: Any) -> bool:
-        """Return whether f(s)*s >= 0 on a window and where it starts, after cuts."""
+        """Return whether f(s)*s >= 0 is shown on a window and at its start, cutting if needed."""
         self.left -= 1
         if self.left < 0 or not shown(f, centre, side, (lo, lo), self.real):
             return False

@@ -1,9 +1,10 @@
-"""Laws as rational functions over atoms, in a normal form: what has the same form is equal.
+"""Laws as rational functions over atoms, in a normal form: equal forms are equal functions.
 
-Input: trees, and what each symbol stands for.  Output: `Ratio`, a reduced quotient of polynomials.
+Input: trees, and the values of their symbols.  Output: `Ratio`, a reduced quotient of polynomials.
 Symbols and functions (of normal arguments) are atoms; a choice ``a if c else b`` is ``[c]*a +
-(1 - [c])*b`` with an atom [c] = [c]**2; positive factors leave comparisons and roots.  An identity
-holds wherever both sides have values, whatever is divided by in branches that are not taken.
+(1 - [c])*b`` with an atom [c] = [c]**2; positive factors are removed from comparisons and taken out
+of roots.  An identity holds wherever both sides have values; divisors in branches that are not
+taken do not matter.
 """
 
 from collections.abc import Callable
@@ -82,15 +83,15 @@ Told: TypeAlias = Callable[[Node], Any]
 
 
 class Field:
-    """The atoms of one comparison; `known` tells of comparisons whether they always hold.
+    """The atoms of one comparison; `known` decides whether a comparison always holds.
 
-    Comparisons lose their numeric factors only if it `scales`: some depend on the size of a bank.
+    Comparisons lose positive factors only if it `scales`: some depend on the size of a bank.
     """
 
     def __init__(self, known: Told = lambda _: False, *, scales: bool = False) -> None:
         self.atoms, self.known, self.scales = dict[Any, tuple[int, Node]](), known, scales
-        self.relations = dict[Ratio, Any]()  # zero: of choices, their own squares, and of roots
-        self.nonzero = set[Ratio]()  # factors of what is zero nowhere, taken or not
+        self.relations = dict[Ratio, Any]()  # polynomials that are zero: c**2 - c, r**n - base
+        self.nonzero = set[Ratio]()  # factors that are zero nowhere, whatever branch is taken
 
     def atom(self, key: Any, tree: Node) -> Ratio:
         """Return an atom, the same for the same key."""
@@ -99,12 +100,12 @@ class Field:
         return Ratio(CTX.gen(place))
 
     def of(self, node: Node, words: Told | None = None) -> Ratio:
-        """Return the normal form of a tree, `words` giving that of its symbols and sums."""
+        """Return the normal form of a tree; `words` returns those of its symbols and sums."""
         if node.op == "num":
             return constant(node.value)
         if node.op in ("sym", "sum"):
             return words(node) if words else self.atom(("symbol", node.value), node)
-        if node.op in KINKS and node.op != "table":  # whose pieces are no short sum
+        if node.op in KINKS and node.op != "table":  # the sum of its pieces would be long
             return self.of(unkinked(node), words)
         if node.op == "if":
             for n, side in ((1, node.args[0]), (2, negated(node.args[0]))):
@@ -127,7 +128,7 @@ class Field:
         return self.atom((node.op, *args), node)
 
     def _choice(self, condition: Node, words: Told | None) -> Ratio:
-        """Return the atom [difference > 0], or 1 less that of its opposite."""
+        """Return the atom [difference > 0], or 1 minus the atom of the opposite."""
         less = condition.value in ("<", ">=")
         left, right = condition.args[::-1] if less else condition.args
         found = self.scaled(self.of(left, words) - self.of(right, words))
@@ -141,9 +142,9 @@ class Field:
         return found if condition.value in "<>" else ONE - found
 
     def _inverse(self, ratio: Ratio) -> Ratio:
-        """Return 1/ratio; factors that are zero in a branch not taken, or by roots, are atoms.
+        """Return 1/ratio; the inverse of a factor that choices or roots could make zero is an atom.
 
-        What cancels them would be no identity.
+        Such a factor must not cancel.
         """
         if not self._places(ratio.top):
             return ONE / ratio
@@ -157,12 +158,12 @@ class Field:
         return found
 
     def _places(self, polynomial: Any) -> list[int]:
-        """Return the places of the atoms in a polynomial of which a relation is known."""
+        """Return the indices of the atoms in a polynomial that have a relation."""
         places = [n for n, power in enumerate(polynomial.degrees()) if power]
         return [n for n in places if Ratio(CTX.gen(n)) in self.relations]
 
     def _vanishes(self, factor: Any) -> bool:
-        """Return whether some sides of its choices, or roots in a sum, could make a factor zero."""
+        """Return whether the values of choices, or roots in a sum, could make a factor zero."""
         keys, sides = list(self.atoms), [factor]
         for place in self._places(factor):
             if keys[place][0] != "choice":
@@ -172,7 +173,7 @@ class Field:
         return any(part.is_zero() for part in sides)
 
     def _root(self, base: Ratio, power: int) -> Ratio:
-        """Return a root, positive factors being taken out of it."""
+        """Return a root with positive factors taken out of it."""
         outside = ONE
         for factor, times in self._positive(base):
             root = self._simple(factor, power) if times % power else factor
@@ -181,7 +182,7 @@ class Field:
         return outside if base == ONE else outside * self._simple(base, power)
 
     def _simple(self, base: Ratio, power: int) -> Ratio:
-        """Return a root as an atom; a power is known of one of a single term without choices."""
+        """Return a root as an atom, with a relation if its base is one term without choices."""
         found = self.atom((power, base), Node("**", (self.tree(base),), Fraction(1, power)))
         keys, parts = list(self.atoms), (base.top, base.bottom)
         chosen = any(keys[n][0] == "choice" for part in parts for n in self._places(part))
@@ -190,28 +191,28 @@ class Field:
         return found
 
     def _positive(self, ratio: Ratio) -> list[tuple[Ratio, int]]:
-        """Return the factors known to be positive, if need be with a minus, and their powers."""
+        """Return the factors f or -f known to be positive, and their powers."""
         parts = [(ratio.top, 1), (ratio.bottom, -1)] if ratio != ZERO else []
         factors = [(f, sign * times) for part, sign in parts for f, times in part.factor()[1]]
         both = [(own, times) for f, times in factors for own in (f, -f)]
         return [(Ratio(f), n) for f, n in both if self.known(compare(self._tree(f), ">"))]
 
     def scaled(self, ratio: Ratio) -> Ratio:
-        """Return an expression without its positive factors, of the same sign."""
+        """Return an expression of the same sign without positive factors, if `scales`."""
         if not self.scales or ratio == ZERO:
             return ratio
         size = Ratio(CTX.constant(abs(ratio.top.leading_coefficient())))
         return ratio / prod((part**n for part, n in self._positive(ratio)), start=size)
 
     def same(self, one: Node, other: Node) -> bool:
-        """Return whether two trees are the same function, and not too large to be told."""
+        """Return whether two trees are shown to be the same function."""
         try:
             return self.is_zero(self.of(one) - self.of(other))
         except InputError:
             return False
 
     def is_zero(self, ratio: Ratio) -> bool:
-        """Return whether an expression vanishes, what choices and roots are being known."""
+        """Return whether an expression vanishes by the relations of choices and roots."""
         rest = reduce(lambda top, zero: divmod(top, zero)[1], self.relations.values(), ratio.top)
         return bool(rest == 0)
 

@@ -1,13 +1,13 @@
-"""The checker's own table of functions: derivatives, and what a solver may use of them.
+"""The checker's own table of functions: derivatives, and facts for a solver.
 
-Input: nothing; this is data.  x is the argument and y the value, and a, b are those of another call
-of the same function.  A fact holds for all real numbers: "premise: fact", or with two premises.
+x is the argument and y the value, a and b are those of another call of the same function.  A fact
+holds for all real numbers: "premise: fact", or with two premises.
 """
 
 import re
 from typing import NamedTuple
 
-#: Functions with kinks, by their definition; the pieces of a table are made by halves.
+#: The definitions of functions with kinks; `laws` writes a table as choices.
 KINKS = {
     "abs": "x if x >= 0 else -x",
     "sign": "1 if x > 0 else -1 if x < 0 else 0",
@@ -19,7 +19,7 @@ KINKS = {
 }
 _RISING = "x < a: y < b; x > a: y > b; x >= a: y >= b; x <= a: y <= b"
 _EQUAL = "x <= a: x >= a: y <= b; x <= a: x >= a: y >= b"
-#: What is known of two values; a row names its text.
+#: Facts on two values of a function, by the names that rows of `_SMOOTH` use.
 PAIRS = {
     "odd": f"{_RISING}; x + a <= 0: y + b <= 0; x + a >= 0: y + b >= 0",
     "even": f"{_EQUAL}; {_EQUAL.replace('a', '-a')}",
@@ -27,8 +27,8 @@ PAIRS = {
     "log": f"x > 0: a > 0: {_RISING.replace('; ', '; x > 0: a > 0: ')}",
     "sin": f"{_EQUAL}; {_EQUAL.replace('a', '-a').replace('b', '-b')}",
 }
-#: Name, derivative, sign (that of x, or 1), the text on two values (a rising odd function, an even
-#: one, its own), facts.  The atan(1) is pi/4; pow is |x|**z, the z > 0 of both the same.
+#: Name, derivative, sign (that of x, or 1), facts on two values (a name in `PAIRS`), facts.
+#: atan(1) is pi/4; pow is |x|**z, with the same z > 0 in both calls.
 _SMOOTH = """
 exp  | y            | 1 | exp  | y > 0; y >= 1 + x; x <= 0: y <= 1; x <= 0: y <= 1 + x + x**2/2;
     x < 1: y*(1 - x) <= 1; x >= 0: y >= 1 + x + x**2/2 + x**3/6;
@@ -52,7 +52,7 @@ erf  | exp(-x**2)/sqrt(atan(1)) | x | odd | y < 1; y > -1; x >= 0: y <= 1.1284*x
 
 
 class Smooth(NamedTuple):
-    """A smooth function, as texts of a row."""
+    """A smooth function: the texts of a row."""
 
     slope: str
     sign: str

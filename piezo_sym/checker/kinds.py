@@ -1,13 +1,13 @@
 """The checker's own table of kinds.
 
-Input: nothing; this is data.  A row of `_TABLE` has the form (a hysteron is a store and a law in
-series), the domain of each field that names nodes, these fields, + if what it imposes (co-state,
-input) is an across variable (a coupling gyrates if not), law fields with unit and letters, a state
-first, other fields, and the co-state of a store as a law of its state x.  A state of a `storage` is
-a store by the ``=`` of its rate.  ``?`` marks what may be left out; of the second pairs of a
-coupling one is given, its ratio has the unit of its domains.  A row of `_DOMAINS` has its
-reference, where its inertia and sources stand, its across and through variables with letter and
-unit, and what else `_WITHIN` says of the kinds that each domain has.
+A row of `_TABLE` has the form (a hysteron is a store and a law in series), the domain of each field
+that names nodes, these fields, + if the imposed variable (co-state, input) is an across variable (a
+coupling without + gyrates), law fields with unit and letters, a state first, other fields, and the
+co-state of a store as a law of its state x.  A state of a `storage` has the kind ``=`` with its
+rate.  ``?`` marks optional fields; of the second node pairs of a coupling one is given, and its
+ratio has the unit of its domains.  A row of `_DOMAINS` has the reference, the node field of inertia
+and sources, the across and through variables with letter and unit, and the entries of `_WITHIN`,
+the kinds that each domain has.
 """
 
 from typing import NamedTuple
@@ -47,9 +47,9 @@ heat_source    | heat       | | | + |                             | into input |
 
 
 class Kind(NamedTuple):
-    """A kind: `ends` are fields of nodes and their domains, `laws` the unit and letters of each.
+    """A kind: `ends` are node fields with domains, `laws` law fields with unit and letters.
 
-    `fields` says of each whether it is needed.
+    `fields` are all fields, and whether each is needed.
     """
 
     form: str
@@ -67,7 +67,7 @@ def _kind(row: str) -> tuple[str, Kind]:
     ends = [*zip(nodes.replace("?", "").split(), domains, strict=True)]
     units = {f.rstrip("?"): (u, dict(x.split(":") for x in own)) for f, u, *own in table}
     fields = {word.rstrip("?"): word[-1] != "?" for word in words}
-    if form == "store" and name[0] != "=":  # or its co-state, or the energy, as a law of its state
+    if form == "store" and name[0] != "=":  # its co-state or energy may be given instead
         first, (_, own) = next(iter(units.items()))
         also = {_COSTATES[domains + across]: own, ("energy", "J"): own}
         units = {first: units[first]} | {f: (u, x) for (f, u), x in also.items()} | units

@@ -1,7 +1,7 @@
-"""Laws as text to trees, read by Python's own parser and never run, and trees from trees.
+"""Texts of laws to trees, by Python's own parser and without running them; operations on trees.
 
-Input: text of the law grammar; in a published system ``sum(bank, law)`` too.  Output: `Node` trees
-with exact rationals.  Limits on length, nesting and digits keep hostile text from costing time.
+Input: text of the law grammar; in a published system also ``sum(bank, law)``.  Output: `Node` trees
+with exact rationals.  Limits on length, nesting and digits bound the cost of hostile text.
 """
 
 import ast
@@ -22,23 +22,23 @@ PLAIN = re.compile(
 OPERATORS = {ast.Mult: "*", ast.Div: "/", ast.USub: "neg", ast.UAdd: "+"}
 OPERATORS |= {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
-#: What operations do in every algebra: numbers, rational functions, power series.
+#: Operations in every algebra: numbers, rational functions, power series.
 ARITHMETIC: dict[str, Callable[..., Any]] = {"*": operator.mul, "/": operator.truediv}
 ARITHMETIC |= {"neg": operator.neg, "+": lambda *terms: sum(terms[1:], terms[0])}
-#: The derivatives of operations on x and z, whose own are dx and dz.
+#: The derivatives of operations on x and z, dx and dz being those of x and z.
 SLOPES = {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
 _TEXTS = KINKS | {name: known.slope for name, known in SMOOTH.items()}
 ARGUMENTS = {name: 1 + ("z" in text) for name, text in _TEXTS.items() if text}
 
 
 class InputError(Exception):
-    """The spec or the published system is not what the checker reads; one line says why."""
+    """The checker does not accept a spec, or what is stated of it; one line says why."""
 
 
 class Node(NamedTuple):
-    """A part of a law; its arguments (of ``if``: comparison, then, else), and its `value`.
+    """A part of a law, with its arguments (of ``if``: comparison, then, else) and `value`.
 
-    That is a number, a name (sym), an exponent (``**``), an operator (cmp) or a bank (sum).
+    The value is a number, a name (sym), an exponent (``**``), an operator (cmp) or a bank (sum).
     """
 
     op: str
@@ -46,9 +46,9 @@ class Node(NamedTuple):
     value: Any = None
 
 
-def need(good: object, reason: str) -> None:
-    """Refuse what is not good."""
-    if not good:
+def need(condition: object, reason: str) -> None:
+    """Raise `InputError` with a reason unless a condition is true."""
+    if not condition:
         raise InputError(reason)
 
 
@@ -73,7 +73,7 @@ def negated(condition: Node) -> Node:
 
 
 def walk(node: Node) -> Iterator[Node]:
-    """Yield a node and all that is in it."""
+    """Yield a node and all its parts."""
     yield node
     for arg in node.args:
         yield from walk(arg)
@@ -84,55 +84,55 @@ def symbols(node: Node) -> dict[Any, None]:
     return dict.fromkeys(n.value for n in walk(node) if n.op == "sym")
 
 
-def put(node: Node, values: Mapping[Any, Node]) -> Node:
+def subs(node: Node, values: Mapping[Any, Node]) -> Node:
     """Return a tree with some symbols replaced by trees."""
     if node.op == "sym":
         return values.get(node.value, node)
-    return Node(node.op, tuple(put(arg, values) for arg in node.args), node.value)
+    return Node(node.op, tuple(subs(arg, values) for arg in node.args), node.value)
 
 
-def made(text: str, **parts: Node) -> Node:
+def build(text: str, **parts: Node) -> Node:
     """Return the tree of a text, its names replaced by trees."""
-    return put(parse(text), parts)
+    return subs(parse(text), parts)
 
 
 def unkinked(node: Node) -> Node:
     """Return a function with kinks written as a choice, by its definition."""
     if node.op == "table":
         return _halved(node.args[0], node.args[1:])
-    return made(KINKS[node.op], x=node.args[0], z=node.args[-1])
+    return build(KINKS[node.op], x=node.args[0], z=node.args[-1])
 
 
 def _halved(x: Node, knots: tuple[Node, ...]) -> Node:
-    """Return a table as a choice of two, or as its one piece."""
+    """Return a table as a choice of two halves, or if it has two knots, as a line."""
     if len(knots) > 4:
         n = len(knots) // 4 * 2
         halves = (Node("table", (x, *own)) for own in (knots[: n + 2], knots[n:]))
         return Node("if", (compare(x, "<", knots[n]), *halves))
     a, y, b, z = knots
     known = [own.value for own in knots if own.op == "num"]
-    slope = made("(z - y)/(b - a)", a=a, b=b, y=y, z=z)
+    slope = build("(z - y)/(b - a)", a=a, b=b, y=y, z=z)
     if len(known) == 4 and known[0] != known[2]:
         slope = num((known[3] - known[1]) / (known[2] - known[0]))
-    return made("m*x" if b == z == num(0) else "y + m*(x - a)", m=slope, x=x, a=a, y=y)
+    return build("m*x" if b == z == num(0) else "y + m*(x - a)", m=slope, x=x, a=a, y=y)
 
 
 def increasing(node: Node) -> Iterator[Node]:
-    """Yield that the knots of a table increase, but for plain numbers that do."""
+    """Yield the conditions that the knots of a table increase, where that is not evident."""
     for a, b in pairwise(node.args[1::2] if node.op == "table" else ()):
         if not a.op == b.op == "num" or a.value >= b.value:
             yield compare(a, "<", b)
 
 
 def on_pieces(node: Node, path: tuple[Node, ...] = ()) -> Iterator[tuple[Node, tuple[Node, ...]]]:
-    """Yield a law on each piece of its tables, and where it is taken."""
+    """Yield a law on each piece of its tables, and the path of the piece."""
     table = next((part for part in walk(node) if part.op == "table"), None)
     if table is None:
         yield node, path
         return
-    made = unkinked(table)
-    side, *halves = made.args if made.op == "if" else (made, made)
-    sides = ((side,), (negated(side),)) if made.op == "if" else ((),)
+    pieces = unkinked(table)
+    side, *halves = pieces.args if pieces.op == "if" else (pieces, pieces)
+    sides = ((side,), (negated(side),)) if pieces.op == "if" else ((),)
     for taken, half in zip(sides, halves, strict=True):
         yield from on_pieces(_swapped(node, table, half), (*path, *taken))
 
@@ -143,23 +143,23 @@ def _swapped(node: Node, old: Node, new: Node) -> Node:
 
 
 def derivative(node: Node, by: Any) -> Node:
-    """Return the derivative of a law by a symbol, branch by branch; of one lane, if it is a sum."""
+    """Return the derivative of a law by a symbol, branch by branch; of a sum that of one lane."""
     if by not in symbols(node) or node.op == "sym":
         return num(int(node.op == "sym" and node.value == by))
-    if node.op in KINKS:  # of one with kinks inside, as saturate, once more
+    if node.op in KINKS:  # again, as definitions such as that of saturate have kinks
         return derivative(unkinked(node), by)
     inner = tuple(arg if arg.op == "cmp" else derivative(arg, by) for arg in node.args)
     x, z, dx, dz = node.args[0], node.args[-1], inner[0], inner[-1]
     if node.op in ("+", "if", "sum"):
         return Node(node.op, inner) if node.op != "sum" else dx
     if node.op == "**":
-        return made("n*y*dx", n=num(node.value), y=Node("**", (x,), node.value - 1), dx=dx)
+        return build("n*y*dx", n=num(node.value), y=Node("**", (x,), node.value - 1), dx=dx)
     if node.op == "/" and dz == num(0):
         return Node("/", (dx, z))
     need(node.op != "pow" or dz == num(0), "an exponent changes")
     if node.op in SMOOTH:
-        return Node("*", (made(SMOOTH[node.op].slope, x=x, y=node, z=z), dx))
-    return made(SLOPES[node.op], x=x, z=z, dx=dx, dz=dz)
+        return Node("*", (build(SMOOTH[node.op].slope, x=x, y=node, z=z), dx))
+    return build(SLOPES[node.op], x=x, z=z, dx=dx, dz=dz)
 
 
 def number(text: str) -> Fraction:
@@ -176,7 +176,7 @@ def number(text: str) -> Fraction:
 
 @cache
 def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> Node:
-    """Return the tree of a law, or of a comparison if it `compares` (None: of either)."""
+    """Return the tree of a law, of a comparison if `compares`, or of either if that is None."""
     most = max(length, MAX_TABLE) if re.search(r"\btable *\(", str(text)) else length
     plain = isinstance(text, str) and len(text) <= most and PLAIN.fullmatch(text)
     need(plain, f"{str(text)[:60]!r} is no law of plain text, or too long")
@@ -184,14 +184,14 @@ def parse(text: Any, length: int = MAX_LENGTH, compares: bool | None = None) -> 
         tree = _tree(ast.parse(text.strip(), mode="eval").body, text.strip())
     except (SyntaxError, ValueError, LookupError, ArithmeticError, RecursionError, MemoryError):
         raise InputError(f"{text[:60]!r} is not of the law grammar") from None
-    good = length > MAX_LENGTH or all(part.op != "sum" for part in walk(tree))
-    good = good and compares in (None, tree.op == "cmp")
-    need(good, f"{text[:60]!r} is a comparison, or should be one, or has sums")
+    summed = length <= MAX_LENGTH and any(part.op == "sum" for part in walk(tree))
+    expected = compares in (None, tree.op == "cmp") and not summed
+    need(expected, f"{text[:60]!r} is a comparison, or should be one, or has sums")
     return tree
 
 
 def _tree(node: ast.AST, text: str) -> Node:
-    """Return the tree of a part of a text; raises ValueError if laws have no such part."""
+    """Return the tree of a part of a text; raises ValueError if it is not of the law grammar."""
 
     def of(*parts: ast.AST) -> tuple[Node, ...]:
         found = tuple(_tree(part, text) for part in parts)
@@ -234,7 +234,7 @@ def _tree(node: ast.AST, text: str) -> Node:
 
 
 def _power(base: Node, exponent: Node) -> Node:
-    """Return a power; with a parameter in its exponent it is exp and log, or may be of zero."""
+    """Return a power; with names in the exponent by exp and log, or `pow` if the base chooses."""
     parts = [base]
     for part in parts:
         parts += part.args[: {"*": 2, "/": 1}.get(part.op, 0)]
@@ -249,6 +249,6 @@ def _power(base: Node, exponent: Node) -> Node:
 
 
 def _value(node: Node) -> Fraction:
-    """Return the number that an exponent is."""
+    """Return the value of a numeric exponent."""
     args = [_value(arg) for arg in node.args]
     return ARITHMETIC[node.op](*args) if args else Fraction(node.value)

@@ -1,10 +1,11 @@
 """Kirchhoff's and Newton's laws of a spec as one sparse tableau, solved in any field.
 
 Input: a `Spec`, the size of each bank, and the algebra of the laws, numbers or rational functions:
-`one`, ``law(element, field, lane, letter)`` ("law" the dissipative one), ``given(role, owner,
-lane)`` of an input "u", a co-state "E" or a temperature "T", and ``like(slot)``, how many lanes are
-like one.  Output: `Flows`.  Unknown are the through and the across variable of every branch and
-the potential of every node; a law linear in its letter is an equation, in either causality.
+`one`, ``law(element, field, lane, letter)`` (field "law" is the dissipative one), ``given(role,
+owner, lane)`` of an input "u", a co-state "E" or a temperature "T", and ``weight(slot)``, the
+number of lanes that a slot represents.  Output: `Flows`.  Unknowns are the through and the across
+variable of each branch and the potential of each node; a law linear in its letter is an equation,
+in either causality.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -13,19 +14,19 @@ from typing import Any, NamedTuple
 
 from .field import Field
 from .kinds import REFERENCES
-from .laws import Node, made, need, num, put, sym
+from .laws import Node, build, need, num, subs, sym
 from .spec import Element, Spec
 
 Form = dict[Any, Any]
 Slot = tuple[str, int]
-#: A rank, and the unknown to solve a row for; None if it has none.
+#: A rank, and the unknown to solve a row for, or None.
 Choice = tuple[tuple[int, ...], Any]
 FORMS = ("store", "law", "source", "coupling", "hysteron", "body")
 UNKNOWN = ("through", "across", "potential")
 
 
 class Branch(NamedTuple):
-    """A branch: its element and lane, what stands in it, its nodes, what it imposes."""
+    """A branch: its element and lane, its role, its nodes, and whether it imposes an across one."""
 
     element: str
     lane: int
@@ -34,17 +35,17 @@ class Branch(NamedTuple):
     across: bool
 
     def variables(self) -> tuple[tuple[str, "Branch"], tuple[str, "Branch"]]:
-        """Return the variable that its law gives, and that which the network gives it."""
+        """Return the variable that the branch imposes, then the other."""
         across, through = ("across", self), ("through", self)
         return (across, through) if self.across else (through, across)
 
 
 class SingularError(Exception):
-    """The laws have no or more than one solution, or a loop of laws that are not linear."""
+    """The laws have no or more than one solution, or a loop of nonlinear laws."""
 
 
 class Flows(NamedTuple):
-    """A network solved, by (element, lane); of ports their output and what flows in with it."""
+    """A solved network, by (element, lane); of each port the output and its conjugate input."""
 
     letters: dict[Slot, Any]
     outputs: dict[Slot, Any]
@@ -54,7 +55,7 @@ class Flows(NamedTuple):
 
 
 def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
-    """Return what flows in a network; raises `SingularError` if its laws do not tell."""
+    """Return the solution of a network; raises `SingularError` if there is no single one."""
     branches, zero = _all_branches(spec, counts), algebra.one - algebra.one
     unknowns, pivots, left = solved(_equations(spec, branches, algebra))
     if left:
@@ -65,20 +66,20 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
         total = zero
         for (role, *slot), factor in unknowns[branch.variables()[1]].items():
             if role == "R" and branch.role == "store":
-                continue  # what follows adds the opposite to a joined rate
+                continue  # rates of followers cancel in the rate of the joined state
             if role == "R" or (role == "W" and (*slot,) not in found.outputs):
                 raise SingularError("laws that are not linear depend on each other")
             total += factor * (found.outputs[*slot,] if role == "W" else algebra.given(role, *slot))
         return total
 
     stores = {(b.element, b.lane): b for b in branches if b.role == "store"}
-    order = {"law": 0, "linear": 1, "slip": 2}  # others may depend on those before
+    order = {"law": 0, "linear": 1, "slip": 2}  # later roles may depend on earlier ones
     for branch in sorted(branches, key=lambda b: order.get(b.role, 3)):
         element, slot = spec.elements[branch.element], (branch.element, branch.lane)
         if branch.role in order:
             letters = [answer(branch)]
             if branch.role == "slip":
-                found.outputs[slot] = zero  # its rate is without it
+                found.outputs[slot] = zero  # the rate that drives a slip is without the slip
                 letters.append(answer(stores[slot]))
             found.letters[slot] = letters[0]
             found.outputs[slot] = algebra.law(element, "law", branch.lane, *letters)
@@ -92,7 +93,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
 
 
 def relations(spec: Spec, counts: Mapping[str, int], algebra: Any) -> list[Form]:
-    """Return the combinations of what is given that the laws force to be zero."""
+    """Return the combinations of givens that the laws force to be zero."""
     *_, left = solved(_equations(spec, _all_branches(spec, counts), algebra))
     return [row for row in left if row]
 
@@ -106,7 +107,7 @@ def _all_branches(spec: Spec, counts: Mapping[str, int]) -> list[Branch]:
         for node in e.chain or ():
             users.setdefault(node, set()).add(None)
     own = {node for node, lanes in users.items() if len(lanes) == 1 and None not in lanes}
-    own -= {*REFERENCES.values()}  # what elements of one bank alone name, each lane has for itself
+    own -= {*REFERENCES.values()}  # each lane has its own copy of nodes that one bank alone uses
 
     def placed(node: Any, branch: Branch) -> Any:
         element = spec.elements[branch.element]
@@ -120,11 +121,11 @@ def _all_branches(spec: Spec, counts: Mapping[str, int]) -> list[Branch]:
 
 
 def _heat(spec: Spec, algebra: Any, found: Flows) -> None:
-    """Add to the rates of entropies what heats, and what comes in: lam*(T_e/T - 1) or P/T."""
+    """Add to the rates of entropies the heats, and the inputs lam*(T_e/T - 1) or P/T."""
     T = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
     for slot, W in found.outputs.items():
         (body,) = spec.elements[slot[0]].bodies
-        found.rates[body, 0] += algebra.like(slot) * W * found.letters[slot] / T[body]
+        found.rates[body, 0] += algebra.weight(slot) * W * found.letters[slot] / T[body]
     for e in spec.of("ambient", "conduction", "heat"):
         lam, ends = algebra.law(e, "conductance", 0), [T[body] for body in e.bodies]
         ends += [algebra.given("u", e.name, 0)] if e.input else []
@@ -159,8 +160,8 @@ def _equations(spec: Spec, branches: list[Branch], algebra: Any) -> Iterator[For
         fall: Form = {("across", branch): one}
         for node, sign in zip(branch.nodes, (one, -one), strict=True):
             if node not in REFERENCES.values():
-                shared = isinstance(node, str)  # a lane's own node is not
-                many = algebra.like((branch.element, branch.lane)) if shared else one
+                shared = isinstance(node, str)  # a lane's own node is a tuple
+                many = algebra.weight((branch.element, branch.lane)) if shared else one
                 balances.setdefault(node, {})["through", branch] = sign * many
                 fall["potential", node] = -sign
         yield fall
@@ -171,13 +172,13 @@ def _equations(spec: Spec, branches: list[Branch], algebra: Any) -> Iterator[For
             if node not in REFERENCES.values():
                 balances.setdefault(node, {})[flow] = fall["potential", node] = sign
         for node in [node for node in balances if node[0] == (bank,)]:
-            balances[node][flow], fall["potential", node] = -one, -algebra.like((bank, node[1]))
+            balances[node][flow], fall["potential", node] = -one, -algebra.weight((bank, node[1]))
         yield fall
     yield from balances.values()
 
 
 def _law(element: Element, branch: Branch, algebra: Any) -> Form:
-    """Return what a law imposes less what it says of that, to make zero."""
+    """Return the equation (a form that is zero) of the law of a branch."""
     (imposed, answer), one = branch.variables(), algebra.one
     if branch.role in ("first", "second"):
         first, second = _branches(element, (0,))
@@ -193,7 +194,7 @@ def _law(element: Element, branch: Branch, algebra: Any) -> Form:
 
 
 def _choice(n: int, row: Form) -> Choice:
-    """Return the best unknown to solve a row for: factors 1 and -1, what falls, short rows."""
+    """Return the best unknown to solve a row for: by factor 1 or -1, then kind, then row length."""
     known = [(x, factor) for x, factor in row.items() if x[0] in UNKNOWN and factor != 0]
     size = len(row), n
     ranks = [((int(f not in (1, -1)), int(x[0] != "across"), *size), x) for x, f in known]
@@ -203,9 +204,9 @@ def _choice(n: int, row: Form) -> Choice:
 def solved(
     left: Iterable[Form], choose: Callable[[int, Form], Choice] = _choice
 ) -> tuple[dict[Any, Form], list[Any], list[Form]]:
-    """Return each unknown by what is given, the pivots, and the rows that have no unknown.
+    """Return each unknown in terms of givens, the pivots, and the rows without unknowns.
 
-    Of what `choose` says of each row, the least is solved for first.
+    The row with the least rank by `choose` is solved first.
     """
     rows, found, pivots = dict(enumerate(left)), dict[Any, Form](), list[Any]()
     choices = {n: choose(n, row) for n, row in rows.items()}
@@ -222,7 +223,7 @@ def solved(
                 factor = form.pop(label)
                 for key, value in found[label].items():
                     form[key] = form[key] + factor * value if key in form else factor * value
-                    if (form[key] == 0) is True:  # an enclosure of zero is not
+                    if (form[key] == 0) is True:  # for an enclosure of zero it is no bool
                         del form[key]
                 if name in rows:
                     choices[name] = choose(name, form)
@@ -232,4 +233,4 @@ def solved(
 @cache
 def is_linear(law: Node, letter: Any) -> bool:
     """Return whether a law is proportional to its letter: f(z) = z*f(1), by its form."""
-    return Field().same(law, made("z*x", z=sym(letter), x=put(law, {letter: num(1)})))
+    return Field().same(law, build("z*x", z=sym(letter), x=subs(law, {letter: num(1)})))

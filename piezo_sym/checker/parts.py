@@ -1,4 +1,4 @@
-"""Elements as others: the states of a storage as stores, a stop as a store that slips.
+"""Elements rewritten as others: the states of a storage as stores, a stop as a store with a slip.
 
 Input: the tables of elements.  Output: tables of the kinds in `kinds`.
 """
@@ -8,17 +8,17 @@ from typing import Any
 
 from .laws import need, parse
 
-#: What a stop of this size is a kind of, and the letters of its effort and its rate.
+#: By the size field of a stop: the kind of its store, the letters of its effort and its rate.
 SIZES = {"stiffness": ("spring", "f", "v"), "capacitance": ("capacitor", "v", "i")}
 
 
-def whole(name: str) -> str:
-    """Return the element of the spec that an element, perhaps a state of a storage, is of."""
+def stem(name: str) -> str:
+    """Return the name in the spec of an element, which may be one state of a storage."""
     return name.partition(".")[0]
 
 
 def parts(elements: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the elements, and for a storage a store of each of its states, or a body."""
+    """Yield the elements, a storage as one store for each state, or a body for an entropy."""
     for name, entry in elements.items():
         named = name.isidentifier() and not entry["kind"].startswith("=")
         need(named, f"elements.{name[:60]} has a wrong key, or no name")
@@ -26,24 +26,22 @@ def parts(elements: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
             yield name, entry
             continue
         rates = [own["rate"] for own in entry["states"].values()]
-        good = set(entry) == {"kind", "energy", "states"} and rates.count("entropy") < 2 and rates
-        need(good, f"elements.{name} has a wrong key, or two entropies")
+        valid = set(entry) == {"kind", "energy", "states"} and rates.count("entropy") < 2 and rates
+        need(valid, f"elements.{name} has a wrong key, or two entropies")
         for state, own in entry["states"].items():
             part = {**own, "kind": f"={own['rate']}", "energy": entry["energy"], "state": state}
             del part["rate"]
             yield name if own["rate"] == "entropy" else f"{name}.{state}", part
 
 
-def slipping(name: str, entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a stop as a spring or capacitor with a slip, that of the rate it is projected on."""
+def slipping_store(name: str, entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a stop as a spring or capacitor whose slip takes the rate beyond the limit."""
     (size,) = (field for field in SIZES if field in entry)
     kind, f, v, limit = *SIZES[size], entry["limit"]
-    parse(limit)  # it is put into brackets
+    parse(limit)  # it must be a law by itself, before it is put into brackets
     slip = f"({v} if {f} >= ({limit}) else 0) if {v} > 0 else ({v} if {f} <= -({limit}) else 0)"
     given = {"kind": kind, "slip": slip, "discontinuous": True, "state": f"z_{name}"}
     others = {field: entry[field] for field in entry if field not in ("kind", "limit")}
-    need(
-        {"between", "count", "bank", "series", "heats", "state", size} >= set(others),
-        f"{name} has a wrong key",
-    )
+    known = {"between", "count", "bank", "series", "heats", "state", size}
+    need(known >= set(others), f"{name} has a wrong key")
     return given | others

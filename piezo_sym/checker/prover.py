@@ -1,8 +1,8 @@
-"""Claims on laws for every real number of a domain, asked of cvc5.
+"""Claims on laws for every real number of a domain, decided by cvc5.
 
-Input: trees.  Output: whether a claim follows.  Laws and conditions go whole, choices as `ite`.
-Every function is a symbol of which implications are known that hold for all real numbers, their
-premise being the function's own domain: b != 0 -> q*b = a.  Nothing is assumed of a path.
+Input: trees.  Output: whether a claim follows.  Laws and conditions are stated in full, choices as
+`ite`.  Every function is a symbol with implications that hold for all real numbers; their premise
+is the function's own domain, as in b != 0 -> q*b = a, never the path on which it stands.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,7 +16,7 @@ from cvc5 import Kind
 
 from .field import Field
 from .functions import KINKS, SMOOTH
-from .laws import Node, compare, increasing, made, negated, num, sym, symbols, unkinked
+from .laws import Node, build, compare, increasing, negated, num, sym, symbols, unkinked
 
 EFFORT, MILLISECONDS, SECONDS, MOST_PAIRS = 100_000, 8000, 300, 12
 KINDS = {"+": Kind.ADD, "*": Kind.MULT, "neg": Kind.NEG, "if": Kind.ITE, "=": Kind.EQUAL}
@@ -24,24 +24,24 @@ KINDS |= {"<": Kind.LT, "<=": Kind.LEQ, ">": Kind.GT, ">=": Kind.GEQ, "!=": Kind
 
 
 class Claim(NamedTuple):
-    """A comparison (``!=`` and ``=`` too) that is to follow where `path` is taken."""
+    """A comparison (also ``!=`` and ``=``) that must follow where `path` is taken."""
 
     claim: Node
     path: tuple[Node, ...] = ()
 
 
 def true(left: Node, operator: str, right: Node | int = 0, path: tuple[Node, ...] = ()) -> Claim:
-    """Return the claim that a comparison is true where `path` is taken."""
+    """Return the `Claim` that a comparison is true where `path` is taken."""
     return Claim(compare(left, operator, right), path)
 
 
-def taken(path: tuple[Node, ...], tree: Node) -> Node:
-    """Return a tree where a path is taken, and zero elsewhere."""
+def guarded(path: tuple[Node, ...], tree: Node) -> Node:
+    """Return a law that is a tree where a path is taken, and zero elsewhere."""
     return reduce(lambda inner, step: Node("if", (step, inner, num(0))), reversed(path), tree)
 
 
 class _Query:
-    """Trees as terms of cvc5, each part once, and the facts on the functions in them."""
+    """Trees as terms of cvc5, equal parts shared, with facts on the functions in them."""
 
     def __init__(self) -> None:
         self.make = cvc5.TermManager()
@@ -52,7 +52,7 @@ class _Query:
         self.known, self.calls = dict[Node, Any](), dict[Any, list[tuple[Node, Node]]]()
 
     def add(self, fact: Node, *premises: Node, holds: bool = True) -> None:
-        """Assert a comparison, or its opposite, where premises hold."""
+        """Assert that premises imply a comparison, or its opposite unless it `holds`."""
         term = self.term(fact) if holds else self.make.mkTerm(Kind.NOT, self.term(fact))
         for premise in premises:
             term = self.make.mkTerm(Kind.IMPLIES, self.term(premise), term)
@@ -78,8 +78,8 @@ class _Query:
             return self.term(self._power(args[0], Fraction(node.value)))
         if node.op == "/" and args[1].op == "num" and args[1].value:
             return self.term(Node("*", (num(1 / args[1].value), args[0])))
-        if node.op == "/" and args[0].op == "neg":  # -(a/b), for a/b may be known
-            return self.term(made("-(x/z)", x=args[0].args[0], z=args[1]))
+        if node.op == "/" and args[0].op == "neg":  # as -(a/b), to share a/b
+            return self.term(build("-(x/z)", x=args[0].args[0], z=args[1]))
         if node.op == "sym":
             return self.make.mkConst(self.real, f"y{len(self.known)}")
         y = sym(("value", node))
@@ -90,7 +90,7 @@ class _Query:
         return self.term(y)
 
     def _power(self, x: Node, exponent: Fraction) -> Node:
-        """Return x**(p/q) in products, by y with x >= 0 -> y >= 0 and y**q = x."""
+        """Return x**(p/q) as a product of y, with x >= 0 -> y >= 0 and y**q = x."""
         y, order = x, exponent.denominator
         if order > 1:
             y = sym(("root", x, order))
@@ -100,20 +100,20 @@ class _Query:
         return size if exponent >= 0 else Node("/", (num(1), size))
 
     def _function(self, name: str, y: Node, x: Node, *more: Node) -> None:
-        """Assert what is known of a smooth function, alone and of two values of one."""
+        """Assert the facts on a value of a smooth function, and on pairs with earlier values."""
         if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a; a > 0 for the other
             self.add(compare(y, "=", x.args[0]), *[compare(x.args[0], ">")] * (name == "exp"))
         others, known = self.calls.setdefault((name, *more), []), SMOOTH[name]
         pairs = [(known.pairs, {"a": a, "b": b}) for a, b in others[:MOST_PAIRS]]
         for texts, words in [(known.facts, dict[str, Node]()), *pairs]:
             for text in texts.split(";"):
-                *premises, fact = (made(t.strip(), x=x, y=y, **words) for t in text.split(":"))
+                *premises, fact = (build(t.strip(), x=x, y=y, **words) for t in text.split(":"))
                 self.add(fact, *premises)
         others.append((x, y))
 
 
 class Prover:
-    """Answers claims under the conditions of a domain, and `ties` between names and states."""
+    """Decides claims under the conditions of a domain, and `ties` between names and states."""
 
     def __init__(self, domain: Sequence[Node], ties: Sequence[Node] = ()) -> None:
         self.domain, self.ties, self.deadline = tuple(domain), tuple(ties), monotonic() + SECONDS
@@ -140,7 +140,7 @@ class Prover:
 
 
 def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
-    """Yield what must hold for a tree to have a value, where each part is reached."""
+    """Yield the claims under which a tree has a value: of each part, on the path to it."""
     condition = node.args[:1] if node.op == "if" else ()
     for n, arg in enumerate(node.args):
         side = condition if n == 1 else tuple(map(negated, condition)) if n == 2 else ()
@@ -149,7 +149,7 @@ def partial(node: Node, path: tuple[Node, ...] = ()) -> Iterator[Claim]:
 
 
 def needed(node: Node) -> Iterator[Node]:
-    """Yield what must hold of a function's arguments for it to have a value."""
+    """Yield the conditions on a node's arguments under which it has a value."""
     yield from increasing(node)
     power = Fraction({"/": -1, "**": node.value}.get(node.op, 1))
     if node.op == "pow":

@@ -1,8 +1,8 @@
-"""What has to be shown of a spec, listed from the spec itself, and whether it is so.
+"""The rows that a spec needs, listed from the spec itself, and whether each is confirmed.
 
 Input: a `Spec` and the parsed ``proofs.json``.  Output: one (id, element, reason) per row, the
 reason empty where it is confirmed.  skew and casimir follow from the balances; `program` is about
-printed text, which is not read here: it has to be stated, and is called so.
+printed text, which is not read here: it must be stated, and is reported as stated.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -13,16 +13,16 @@ from . import laws
 from .certificate import check_certificate
 from .field import ZERO, Field
 from .functions import KINKS
-from .laws import InputError, Node, compare, made, need, negated, num, put, sym, symbols
-from .parts import whole
-from .prover import Claim, Prover, needed, partial, taken, true
+from .laws import InputError, Node, build, compare, need, negated, num, subs, sym, symbols
+from .parts import stem
+from .prover import Claim, Prover, guarded, needed, partial, true
 from .slopes import vanishes
 from .spec import Element, Spec
 from .system import Finding
 
-#: The row that has to be stated, and is not looked at; last, rows that are not stated.
 Key = tuple[str, str]
-STATED, MOST_PIECES, MOVING, OWN = "program", 400, ("z", "r", "x", "T"), ("domain", "system")
+#: The row that must be stated and is not checked; `UNSTATED` rows are checked and never stated.
+STATED, MOST_PIECES, MOVING, UNSTATED = "program", 400, ("z", "r", "x", "T"), ("domain", "system")
 
 
 def audit(spec: Spec, proofs: Mapping[str, Any]) -> list[tuple[str, str, str]]:
@@ -47,7 +47,7 @@ class _Audit:
         self.prover = Prover(spec.conditions, self.ties)
 
     def look(self) -> dict[Key, str]:
-        """Look at the rows, each after those that it rests on; return why each is not confirmed."""
+        """Check the rows, each after those it rests on; return why each is not confirmed, or ''."""
         spec, reasons, system = self.spec, self.found.reasons, [("system", "")]
         self._row("domain", "", self._own_values())
         divisors = [true(tree, "!=") for tree in self.found.divisors]
@@ -69,12 +69,12 @@ class _Audit:
         domain = [claim for tree in spec.conditions for claim in partial(tree)]
         if domain or ("welldef", "") in self.stated:
             self._row("welldef", "", domain, system)
-        for name in dict.fromkeys(map(whole, spec.elements)):
-            self._element(*(e for e in spec.elements.values() if whole(e.name) == name))
+        for name in dict.fromkeys(map(stem, spec.elements)):
+            self._element(*(e for e in spec.elements.values() if stem(e.name) == name))
         heat = [key for key in self.done if key[0] in ("domain", "temperature", "passive")]
         self._row("sigma", "", (), heat)
         cooled = list[Claim]()
-        for e in spec.of("ambient"):  # a conductance that is not negative, T_e above zero
+        for e in spec.of("ambient"):
             law, hot = e.laws["conductance"], sym(("u", e.input))
             cooled += [*partial(law), true(law, ">="), true(hot, ">")]
         for name in ("exergy", "environment") if cooled else ():
@@ -90,12 +90,12 @@ class _Audit:
     def _row(
         self, name: str, owner: str = "", claims: Any = (), rests: Iterable[Key] = (), why: str = ""
     ) -> None:
-        """Look at a row: stated as PROVED, its claims follow, and what it rests on is confirmed."""
+        """Check a row: it is stated as PROVED, its claims follow, the rows it rests on hold."""
         verdicts = [str(entry.get("verdict")) for entry in self.stated.get((name, owner), ())]
         prover, reason = self.prover if name != "domain" else Prover(()), ""
         try:
-            need(name in OWN or bool(verdicts), "missing")
-            for verdict in () if name in OWN else verdicts:
+            need(name in UNSTATED or bool(verdicts), "missing")
+            for verdict in () if name in UNSTATED else verdicts:
                 need(verdict == "PROVED", f"stated as {verdict}")
             need(not why, why)
             for key in rests:
@@ -109,14 +109,14 @@ class _Audit:
         self.done[name, owner] = reason
 
     def _wrong_slope(self) -> str:
-        """Return why the energy is not that of the co-states; nothing if it is."""
+        """Return why dU/dx is not the co-states, or ''."""
         unlike = (x for x, own in self.found.slopes.items() if not vanishes(*own, self.prover))
         first = next(unlike, "")
         known = f"dU/d{first} is not that of the network" * bool(first)
         return self.found.reasons.get("energy", "") or known
 
     def _own_values(self) -> Iterator[Claim]:
-        """Yield that the spec's own values, in each lane, are in its domain."""
+        """Yield the claims that the spec's own values, in each lane, are in its domain."""
         spec = self.spec
         own = {("u", name): [*map(num, values)] for name, values in spec.inputs.items()}
         own |= {("p", name): [*map(num, values)] for name, values in spec.parameters.items()}
@@ -128,15 +128,15 @@ class _Audit:
 
     @staticmethod
     def _bent(trees: list[Node]) -> list[Node]:
-        """Return the trees that choose branches by what moves."""
+        """Return the trees with choices by states, letters, rates or temperatures."""
         kinks = [(t, n) for t in trees for n in laws.walk(t) if n.op in ("if", *KINKS)]
-        # 5: of two knots, a line
+        # a table of two knots, with 5 arguments, is a line
         kinks = [(t, n) for t, n in kinks if n.op != "table" or len(n.args) > 5]
         choosers = [(t, n.args[0] if n.op in ("if", "table") else n) for t, n in kinks]
         return [t for t, n in choosers if any(s[0] in MOVING for s in symbols(n))]
 
     def _element(self, *parts: Element) -> None:
-        element, name = parts[0], whole(parts[0].name)
+        element, name = parts[0], stem(parts[0].name)
         own = [tree for e in parts for tree in (e.costate, e.law, e.laws.get("energy")) if tree]
         trees, z = own or list(element.laws.values()), ("z", name)
         claims = [claim for tree in trees for claim in partial(tree)]
@@ -150,28 +150,28 @@ class _Audit:
             self._row("passive", name, [*claims, true(trees[0], ">=")])
 
     def _passive(self, element: Element, z: Key) -> Iterator[Claim]:
-        """Yield that a law takes power in, after its certificate if it has one."""
+        """Yield the claims that a law takes power in, or check its certificate instead."""
         given = [entry.get("certificate") for entry in self.stated["passive", element.name]]
         for certificate in filter(None, given):
             check_certificate(self.spec, element, certificate, self.prover)
-        made = laws.on_pieces(element.law or num(0)) if not any(given) else iter(())
-        pieces = [*islice(made, MOST_PIECES + 1)]
+        found = laws.on_pieces(element.law or num(0)) if not any(given) else iter(())
+        pieces = [*islice(found, MOST_PIECES + 1)]
         need(len(pieces) <= MOST_PIECES, "its tables have too many pieces to look at each")
         for law, path in pieces:
             for side in "<>":
                 yield true(law, side + "=", path=(compare(sym(z), side), *path))
 
     def _information(self, name: str, owner: str) -> None:
-        """Look at a row that nothing asks for, as it is claimed."""
+        """Check a stated row that the spec does not need."""
         element, z = self.spec.elements.get(owner), sym(("z", owner))
         if name == "odd" and element and element.law:
-            turned = put(element.law, {("z", owner): made("-z", z=z)})
-            claims = [*partial(turned), true(turned, "=", made("-x", x=element.law))]
+            turned = subs(element.law, {("z", owner): build("-z", z=z)})
+            claims = [*partial(turned), true(turned, "=", build("-x", x=element.law))]
             self._row(name, owner, claims, [("welldef", owner)])
         elif name == "rate-independent" and element and element.law:
             c, v = sym(("c", "")), ("r", owner)
-            faster = put(element.law, {v: made("c*v", c=c, v=sym(v))})
-            same = true(faster, "=", made("c*x", c=c, x=element.law), (compare(c, ">"),))
+            faster = subs(element.law, {v: build("c*v", c=c, v=sym(v))})
+            same = true(faster, "=", build("c*x", c=c, x=element.law), (compare(c, ">"),))
             self._row(name, owner, [same], [("welldef", owner)])
         elif name == "invariant" and element and element.kind.form == "body":
             self._row(name, owner, self._invariant(owner), [("sigma", "")])
@@ -179,13 +179,13 @@ class _Audit:
             self._row(name, owner, why="the checker knows no such row")
 
     def _invariant(self, body: str) -> Iterator[Claim]:
-        """Yield that a body does not cool below its floor: T > floor, T <= m < T_e."""
+        """Yield the claims that a body does not cool below its floor: T > floor, T <= m < T_e."""
         T, m = sym(("T", body)), sym(("m", ""))
-        around = [e for e in self.spec.of("ambient", "conduction") if body in e.bodies]
-        for e in around:
+        contacts = [e for e in self.spec.of("ambient", "conduction") if body in e.bodies]
+        for e in contacts:
             lam, others = e.laws["conductance"], [b for b in e.bodies if b != body]
             hot = sym(("T", others[0]) if others else ("u", e.input))
-            gains = [made("lam*(a/T - 1)", lam=lam, a=hot, T=x) for x in (T, m)]
+            gains = [build("lam*(a/T - 1)", lam=lam, a=hot, T=x) for x in (T, m)]
             between = (compare(T, "<=", m), compare(m, "<", hot))
             if others:
                 yield true(gains[0], ">=", path=(compare(T, "<=", hot),))
@@ -193,7 +193,7 @@ class _Audit:
                 yield true(gains[0], ">=", gains[1], between)
                 yield true(gains[1], ">=", path=between)
         floors = [c for c in self.spec.conditions if c.args[0 if c.value == ">" else 1] == T]
-        strict = any(c.value in "<>" for c in floors) and any(e.input for e in around)
+        strict = any(c.value in "<>" for c in floors) and any(e.input for e in contacts)
         strict = strict and all(body not in e.bodies for e in self.spec.of("heat"))
         ends = [end for e in self.spec.of("coupling") for pair in e.pairs for end in pair]
         strict = strict and ("T", body) not in ends  # a current may take entropy out of it
@@ -210,10 +210,11 @@ def _continuous(trees: list[Node]) -> Iterator[Claim]:
 
 
 class _Closed:
-    """A law on the closed cells of its choices: if it is there its branch, it is continuous.
+    """A law on the closed cells of its choices: if it equals its branch on each, it is continuous.
 
-    Each comparison that moves becomes a choice b of a side, free where both sides are equal; that
-    a cell is not empty is known, too.  A condition's parts have values before it is relied on.
+    Each comparison of moving symbols becomes a choice b of a side, free where both sides are equal;
+    it is assumed that the cell is not empty.  The parts of a condition are shown to have values
+    before the condition is used.
     """
 
     def __init__(self) -> None:
@@ -221,7 +222,7 @@ class _Closed:
         self.field = Field(scales=True)
 
     def tree(self, node: Node, path: tuple[Node, ...], kinks: Iterable[str] = ("sign",)) -> Node:
-        """Return a law in choices of sides; book what is needed for it to have a value."""
+        """Return a law in choices of sides; append the claims under which it has a value."""
         if node.op in kinks:
             return self.tree(laws.unkinked(node), path, kinks)
         if node.op != "if":
@@ -237,15 +238,15 @@ class _Closed:
 
     def _side(self, condition: Node, path: tuple[Node, ...]) -> Node:
         """Return the comparison b > 0 (or b <= 0) that stands for left above (below) right."""
-        difference = made("x - z", x=condition.args[0], z=condition.args[1])
+        difference = build("x - z", x=condition.args[0], z=condition.args[1])
         key = self.field.scaled(self.field.of(difference))
         turned = key != ZERO and key.top.leading_coefficient() < 0
         key, difference = (-key, Node("neg", (difference,))) if turned else (key, difference)
         chosen = compare(sym(("side", f"{key.top}/{key.bottom}")), ">")
         side = chosen if (condition.value in (">", ">=")) != turned else negated(chosen)
         moved = {s: sym(("elsewhere", s)) for s in symbols(condition) if s[0] in MOVING}
-        edge = made("b*d", b=Node("if", (chosen, num(1), num(-1))), d=difference)
-        there = [Node("if", (put(condition, moved), *map(num, n))) for n in ((0, -1), (-1, 0))]
+        edge = build("b*d", b=Node("if", (chosen, num(1), num(-1))), d=difference)
+        there = [Node("if", (subs(condition, moved), *map(num, n))) for n in ((0, -1), (-1, 0))]
         for tree in (edge, Node("if", (side, *there))):
-            self.where.append(compare(taken(path, tree), ">="))
+            self.where.append(compare(guarded(path, tree), ">="))
         return side

@@ -2,8 +2,9 @@
 
 Input: a tree in one symbol t, and a window lo < t <= hi.  Output: the set of signs that it may
 have there; `InputError` if it may lack a value.  Rules give the sign of a product or a function
-from those of its parts; a sum of both signs is expanded: FLINT gives the Taylor series at lo and
-the remainder on the window, and what is exactly zero at lo is divided out, t - lo being positive.
+from those of its parts.  A sum with terms of both signs is expanded: FLINT gives the Taylor series
+at lo and the remainder on the window; powers of t - lo > 0 are divided out where leading terms are
+exactly zero.
 """
 
 from fractions import Fraction
@@ -16,7 +17,7 @@ from flint import arb, arb_series, ctx, fmpq
 from . import laws
 from .field import Field
 from .functions import KINKS, SMOOTH
-from .laws import InputError, Node, compare, made, need, num, put, sym
+from .laws import InputError, Node, build, compare, need, num, subs, sym
 from .prover import Prover
 
 BITS, ORDER, T, TANH = 192, 10, sym("s"), "1 - 2/(exp(2*x) + 1)"
@@ -28,7 +29,7 @@ Found = frozenset[int]
 
 
 class Signs:
-    """Signs on lo < t <= hi; lo = hi one point, trees having no t there."""
+    """Signs on lo < t <= hi; lo = hi is one point, and trees are then free of t."""
 
     def __init__(self, lo: Fraction, hi: Any, prover: Prover) -> None:
         self.lo, self.hi, self.prover, self.known = lo, hi, prover, dict[Node, Found]()
@@ -50,8 +51,9 @@ class Signs:
             return frozenset().union(*map(self.of, self._branches(node)))
         parts = [self.of(arg) for arg in node.args]
         power = Fraction(node.value if node.op == "**" else -1 if node.op == "/" else 1)
-        good = (power >= 0 or 0 not in parts[-1]) and (power.denominator == 1 or -1 not in parts[0])
-        need(good and node.op != "pow" and (node.op != "log" or parts == [{1}]), "no value")
+        defined = power >= 0 or 0 not in parts[-1]
+        defined &= power.denominator == 1 or -1 not in parts[0]
+        need(defined and node.op != "pow" and (node.op != "log" or parts == [{1}]), "no value")
         if node.op == "**":
             found = frozenset(sign ** abs(power.numerator) for sign in parts[0])
         elif node.op == "+":
@@ -60,20 +62,20 @@ class Signs:
         else:
             rule = RULES.get(node.op)
             found = frozenset(rule(*signs) for signs in product(*parts)) if rule else ALL
-        told = node.op in KINKS or not {-1, 1} <= found
-        return found if told else self._looked(node)
+        decided = node.op in KINKS or not {-1, 1} <= found
+        return found if decided else self._as_a_whole(node)
 
     def _branches(self, node: Node) -> tuple[Node, ...]:
-        """Return the branch of a choice that is taken, or both."""
+        """Return the branch of a choice that is taken, or both if that is open."""
         condition, then, other = node.args
-        signs = self.of(made("x - z", x=condition.args[0], z=condition.args[1]))
+        signs = self.of(build("x - z", x=condition.args[0], z=condition.args[1]))
         hold = HOLD[condition.value]
         return (then,) if signs <= hold else (then, other) if signs & hold else (other,)
 
-    def _looked(self, node: Node) -> Found:
-        """Return the signs of a tree as a whole."""
+    def _as_a_whole(self, node: Node) -> Found:
+        """Return the signs of a tree by its series, or by cvc5."""
         tree = Node(node.op, tuple(map(self._settled, node.args)), node.value)
-        found = self._expanded(tree) if self.hi != inf else ALL
+        found = self._by_series(tree) if self.hi != inf else ALL
         rational = not any(part.op in SMOOTH for part in laws.walk(tree))
         if found == ALL and (self.hi == inf or rational):
             for side in ("=", ">=", "<="):
@@ -82,7 +84,7 @@ class Signs:
         return found
 
     def _settled(self, node: Node) -> Node:
-        """Return a tree without the choices that are settled, zero where it is zero."""
+        """Return a tree with decided choices replaced by their branch, and zeros by 0."""
         if self.of(node) == {0}:
             return num(0)
         if node.op in KINKS:
@@ -93,13 +95,13 @@ class Signs:
         args = (self._settled(arg) if arg.op != "cmp" else arg for arg in node.args)
         return Node(node.op, tuple(args), node.value)
 
-    def _expanded(self, node: Node) -> Found:
+    def _by_series(self, node: Node) -> Found:
         radius = arb(_exact((self.hi - self.lo) / 2))
         step, field = arb(radius, radius), Field()
         try:
             both = [arb_series([_exact(self.lo) + more, 1]) for more in (arb(0), step)]
             left, whole = (self._series(node, t) for t in both)
-            if field.is_zero(field.of(put(node, {"s": num(self.lo)}))):
+            if field.is_zero(field.of(subs(node, {"s": num(self.lo)}))):
                 left = arb_series([0, *list(left)[1:]], prec=left.prec)
         except (ValueError, ZeroDivisionError, InputError):
             return ALL
@@ -115,11 +117,11 @@ class Signs:
         return ALL
 
     def _series(self, node: Node, t: Any) -> Any:
-        """Return the series of a tree as far as it is finite; it ends where a choice is open."""
+        """Return the series of a tree as long as it is finite; an open choice has one term."""
         if node.op in ("num", "sym"):
             return t if node.op == "sym" else arb_series([_exact(node.value)])
         if node.op == "tanh":
-            return self._series(made(TANH, x=node.args[0]), t)
+            return self._series(build(TANH, x=node.args[0]), t)
         parts = self._branches(node) if node.op == "if" else node.args
         args, power = [self._series(part, t) for part in parts], Fraction(node.value or 0)
         if node.op == "if":
@@ -153,10 +155,10 @@ def _exact(number: Fraction) -> Any:
 def shown(f: Node, centre: Fraction, side: int, ends: tuple[Fraction, Any], prover: Prover) -> bool:
     """Return whether f(s)*s >= 0 for s = centre + side*t, lo < t <= hi, or at a point lo = hi."""
     before, ctx.prec, ctx.cap = (ctx.prec, ctx.cap), BITS, ORDER + 1
-    s = made("c + k*s", c=num(centre), k=num(side))
+    s = build("c + k*s", c=num(centre), k=num(side))
     s = num(centre + side * ends[0]) if ends[0] == ends[1] else s
     try:
-        return Signs(*ends, prover).of(Node("*", (put(f, {"s": s}), s))) <= {0, 1}
+        return Signs(*ends, prover).of(Node("*", (subs(f, {"s": s}), s))) <= {0, 1}
     except InputError:
         return False
     finally:

@@ -1,9 +1,9 @@
 """Slopes of energies against laws, one branch at a time.
 
-Input: slope minus law, the state, and a `Prover`.  Output: whether it vanishes wherever a branch is
-taken, but for single values of the state: there a continuous energy has the slope of a continuous
-law if it has it on both sides, and that neither jumps is said by other claims.  A domain that holds
-a state at one value has no sides, so what it says of the state makes no edges.
+Input: slope minus law, the state, and a `Prover`.  Output: whether it vanishes on every branch but
+for single values of the state.  At such an edge a continuous energy has the slope of a continuous
+law if it has it on both sides; other claims show that neither jumps.  A domain that keeps a state
+at one value leaves no sides, so its conditions on the state are not used to find edges.
 """
 
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from typing import Any
 
 from .field import Field
 from .functions import KINKS
-from .laws import InputError, Node, compare, derivative, made, need, negated, num, symbols
+from .laws import InputError, Node, build, compare, derivative, need, negated, num, symbols
 from .laws import unkinked as by_choices
 from .prover import Prover
 
@@ -37,13 +37,13 @@ def vanishes(difference: Node, state: Any, prover: Prover) -> bool:
 
 
 def _chosen(node: Node) -> Node:
-    """Return a tree with choices for its kinks."""
-    whole = Node(node.op, tuple(map(_chosen, node.args)), node.value)
-    return _chosen(by_choices(whole)) if whole.op in KINKS else whole
+    """Return a tree with its kinks as choices."""
+    tree = Node(node.op, tuple(map(_chosen, node.args)), node.value)
+    return _chosen(by_choices(tree)) if tree.op in KINKS else tree
 
 
 def _branches(node: Node, path: Path) -> Iterator[tuple[Node, Path]]:
-    """Yield the branches of a tree, and under which comparisons, decided first those inside."""
+    """Yield the branches of a tree with their paths; inner conditions are decided first."""
     condition = _first(node)
     if condition is None:
         yield node, path
@@ -75,9 +75,9 @@ def _is_zero(tree: Node, path: Path, prover: Prover) -> bool:
 
 
 def _is_edge(path: Path, state: Any, prover: Prover) -> bool:
-    """Return whether a path leaves at most one value of the state, parameters given."""
+    """Return whether a path leaves at most one value of the state for given parameters."""
     for left, right in (c.args for c in path if c.value in ("<=", ">=")):
-        slope = derivative(made("x - z", x=left, z=right), state)
+        slope = derivative(build("x - z", x=left, z=right), state)
         fixed = all(role == "p" for role, *_ in symbols(slope))
         edge = fixed and prover.proves(compare(slope, "!="))
         if edge and prover.proves(compare(left, "=", right), path):

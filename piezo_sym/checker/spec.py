@@ -1,7 +1,7 @@
-"""A spec's text to what the checker knows of it, by a reader that shares nothing with the package.
+"""The checker's own reader of specs.
 
-Input: TOML.  Output: a `Spec`: elements with their laws in symbols that have an owner, the whole
-domain (what the spec assumes, what kinds require, widths that are not negative), values in SI.
+Input: TOML.  Output: a `Spec`: elements with their laws in symbols that have an owner, the domain
+(assumptions of the spec, requirements of kinds, widths >= 0), values in SI.
 Symbols are pairs: ("p", parameter), ("u", input), ("x", element) its state, ("z", element) the
 letter of its dissipative law, ("r", element) the rate of its slip, ("T", body).
 """
@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 from . import laws
 from .field import Field
 from .kinds import KINDS, REFERENCES, UNITS, Kind
-from .laws import InputError, Node, compare, made, need, num, sym, symbols
-from .parts import parts, slipping, whole
+from .laws import InputError, Node, build, compare, need, num, sym, symbols
+from .parts import parts, slipping_store, stem
 from .units import Dimension, faults, unit
 
 DOTTED, MAX_BYTES = re.compile(r"(\s*\.\s*[\w\"'-]+){9}"), 500_000
@@ -25,11 +25,12 @@ Symbol = tuple[str, str]
 
 
 class Element(NamedTuple):
-    """An element: `laws` by field, `costate` dU/dx, a dissipative `law` of what it calls `letter`.
+    """An element: `laws` by field, `costate` dU/dx, a dissipative `law` in the letter `letter`.
 
-    What it imposes is `across` or not, or as its store `follows` another the opposite; `bodies` it
-    heats, reads T of, or conducts between; `lanes` a bank and its size, which are in series between
-    the ends of a `chain`.  Nodes ("T", body) are at T, and draw entropy from it.
+    It imposes its `across` variable or not, and the opposite if its store `follows` others.  It
+    heats, conducts between, or reads T of its `bodies`.  `lanes` is its bank with the size, `chain`
+    the ends between which lanes are in series.  A node ("T", body) has the potential T, and draws
+    entropy from the body.
     """
 
     name: str
@@ -50,9 +51,10 @@ class Element(NamedTuple):
 
 
 class Spec(NamedTuple):
-    """What a spec says: `words` is what names in [domain] mean, `states` and `initial` by element.
+    """A spec: `words` are the meanings of names in [domain], `initial` is by element.
 
-    `lists` are the parameters with a value per lane and their banks, `faults` those of its units.
+    `states` is the element of each state, `lists` the bank of each parameter with a value per lane,
+    `faults` are those of units.
     """
 
     parameters: Mapping[str, tuple[Fraction, ...]]
@@ -66,12 +68,12 @@ class Spec(NamedTuple):
     faults: list[str]
 
     def of(self, *forms: str) -> Iterator[Element]:
-        """Yield the elements of some forms, in order."""
+        """Return the elements of some forms, in order."""
         return (e for e in self.elements.values() if e.kind.form in forms)
 
 
 def read_spec(text: str) -> Spec:
-    """Return what a spec says; raises `InputError` if it is none that the checker knows."""
+    """Return the spec of a text; raises `InputError` if the checker cannot read it."""
     small = len(text) <= MAX_BYTES and not DOTTED.search(text)
     need(small, "the spec is too large, or nested too deeply")
     try:
@@ -87,7 +89,7 @@ class _Reader:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
         entries = tables["elements"]
         self.limits = {n: e["limit"] for n, e in entries.items() if e["kind"] == "stop"}
-        entries |= {name: slipping(name, entries[name]) for name in self.limits}
+        entries |= {name: slipping_store(name, entries[name]) for name in self.limits}
         self.parameters = self._values("parameters", "value", "p")
         self.inputs = self._values("inputs", "default", "u")
         tables["elements"] = dict(parts(tables["elements"]))
@@ -115,7 +117,7 @@ class _Reader:
         return Spec(*tables, initial, conditions, self._lists(conditions), self.faults)
 
     def _joins(self, name: str) -> bool:
-        """Return whether those of an element that are in parallel have one state."""
+        """Return whether the lanes of an element are in parallel with one state."""
         kind, entry = self.kinds[name], self.tables["elements"][name]
         return kind.form == "store" and kind.across and not {"slip", "bank", "series"} & {*entry}
 
@@ -146,10 +148,10 @@ class _Reader:
     def _resolved(self, text: Any, words: Mapping[str, Symbol], compares: bool = False) -> Node:
         tree = laws.parse(text, compares=compares)
         for part in tree.args if compares else (tree,):
-            Field().of(part)  # refuses what is too large to be written out
+            Field().of(part)  # raises if it is too large to be written out
         unknown = [str(name)[:60] for name in symbols(tree) if name not in words]
         need(not unknown, f"{text[:60]!r} has unknown names: {', '.join(unknown)}")
-        return laws.put(tree, {name: sym(words[name]) for name in symbols(tree)})
+        return laws.subs(tree, {name: sym(words[name]) for name in symbols(tree)})
 
     def _element(self, name: str) -> Element:
         entry, kind = self.tables["elements"][name], self.kinds[name]
@@ -159,8 +161,8 @@ class _Reader:
         heats = [entry[f] for f in ("heats", "body", "into", "temperature") if f in entry]
         heats = entry["between"] if kind.form == "conduction" else entry.get("bodies", heats)
         bodies = () if kind.form == "body" else tuple(heats)
-        good = set(bodies) <= set(self.bodies) and len(set(bodies)) == len(bodies)
-        need(good, f"elements.{name} names what is no thermal_mass")
+        warm = set(bodies) <= set(self.bodies) and len(set(bodies)) == len(bodies)
+        need(warm, f"elements.{name} names what is no thermal_mass")
         ends = [end for end in kind.ends if end[0] in entry]
         coupled = kind.form == "coupling" and "bodies" not in kind.fields
         need(len(ends) == 2 or not coupled, f"elements.{name} needs two pairs of nodes")
@@ -171,7 +173,7 @@ class _Reader:
         costate = self._costate(name, own)
         if count := self.joined.get(name):  # U(x) = count*U_j(x/count)
             share = Node("/", (sym(("x", name)), num(count)))
-            costate = costate and laws.put(costate, {("x", name): share})
+            costate = costate and laws.subs(costate, {("x", name): share})
         law, letter = (own[field], next(iter(kind.laws[field][1]))) if dissipates else (None, "")
         across = kind.across and (kind.form != "law" or field == next(iter(kind.laws)))
         source, lanes = entry.get("input", ""), self.lanes.get(("x", name))
@@ -193,7 +195,7 @@ class _Reader:
         return Element(name, kind, own, state, costate, law, letter, *others, jumps)
 
     def _costate(self, name: str, own: dict[str, Node]) -> Node | None:
-        """Return dU/dx by the one law that a store has, or by its energy."""
+        """Return dU/dx from the one law of a store, or from its energy."""
         kind, first = self.kinds[name], next(iter(self.kinds[name].laws), "")
         given = [field for field in own if field not in ("rest", "slip")]
         single = len(given) == 1 and ("rest" not in own or given[0] == first)
@@ -205,10 +207,10 @@ class _Reader:
         if kind.form == "store" and given[0] != first:
             return own[given[0]]
         parts = {"rest": num(0), **own, "x": sym(("x", name))}
-        return made(kind.costate, **parts) if kind.costate else None
+        return build(kind.costate, **parts) if kind.costate else None
 
     def _pairs(self, name: str, ends: list[tuple[str, str]]) -> tuple[tuple[Any, Any], ...]:
-        """Return the nodes of an element, each of which is in one domain."""
+        """Return the node pairs of an element; raises if a node is in two domains."""
         entry = self.tables["elements"][name]
         given = ((entry[key], REFERENCES[d]) if key == "at" else entry[key] for key, d in ends)
         pairs = tuple((a, b) for a, b in given)
@@ -230,9 +232,8 @@ class _Reader:
         warm = zip(bodies or self.bodies[: len(self.bodies) == 1], ("T T_1", "T_2"), strict=False)
         words |= {w: ("T", body) for body, own in warm for w in own.split() if w in letters}
         if field == "energy":
-            words |= {
-                w: s for w, s in self.words.items() if s[0] == "x" and whole(s[1]) == whole(name)
-            }
+            states = (w for w, owner in self.states.items() if stem(owner) == stem(name))
+            words |= {state: self.words[state] for state in states}
         words |= {"T_e": ("u", entry["input"])} if "T_e" in letters else {}
         for role, letter in zip("zr", (x for x in letters if x[0] != "T"), strict=False):
             words[letter] = ("x" if stored else role, name)
@@ -242,7 +243,7 @@ class _Reader:
         return law
 
     def _conditions(self, initial: Mapping[str, tuple[Node, ...]]) -> Iterator[Node]:
-        """Yield what the spec assumes and its kinds require, and that no width is negative."""
+        """Yield the assumptions of the spec, the requirements of its kinds, and widths >= 0."""
         table, trees = self.tables["domain"], [tree for own in initial.values() for tree in own]
         need(set(table) <= {"assume"}, "the domain has a wrong key")
         for text in table.get("assume", []):
@@ -266,7 +267,7 @@ class _Reader:
                 yield compare(part.args[1], ">=")
 
     def _starts(self, state: str) -> tuple[Node, ...]:
-        """Return where a state starts, in each lane: texts have units, numbers are in SI."""
+        """Return the initial value of a state per lane: texts have units, numbers are in SI."""
         words = {word: meaning for word, meaning in self.words.items() if meaning[0] in "pu"}
         given, needed = self.tables["initial"][state], self.units["x", self.states[state]]
         trees, count = list[Node](), num(self.joined.get(self.states[state], 1))
@@ -278,7 +279,7 @@ class _Reader:
         return tuple(trees)
 
     def _lists(self, conditions: tuple[Node, ...]) -> dict[str, str]:
-        """Return the bank of each list of values, of which a condition has the lanes of one."""
+        """Return the bank of each list of values; raises if a condition mixes two banks."""
         banks, lists = {symbol: bank for symbol, (bank, _) in self.lanes.items()}, dict[str, str]()
         for name, values in self.parameters.items():
             if isinstance(self.tables["parameters"][name]["value"], list):

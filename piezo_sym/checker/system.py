@@ -1,11 +1,11 @@
 """The published system against Kirchhoff's laws, exactly, for banks of any number of lanes.
 
 Input: a `Spec` and the "system" of ``proofs.json``.  Output: a `Finding`.  A lane of a bank draws
-the current of its own inductor, a state, from the nodes it shares; so shared rates have sums over
-lanes with coefficients that no count is in, and products of two sums at most (heats).  An identity
-in which no more than two sums are multiplied, in a row of its own lane or none, concerns three
-lanes at once at most.  So a bank has three here, of each of which there are as many as a symbol
-says: no two sums, and no two functions of sums, are then equal for some counts alone.
+the current of its own inductor, a state, from shared nodes; so shared rates have sums over lanes
+with coefficients free of counts, and products of two sums at most (heats).  An identity in which at
+most two sums are multiplied, in the row of one lane or of none, is about three lanes at most.  So a
+bank has three lanes here, each with a symbol for the number of lanes like it: then sums, and
+functions of sums, are equal only if they are for all counts.
 """
 
 from collections.abc import Mapping
@@ -15,9 +15,9 @@ from typing import Any
 from . import laws
 from .field import ONE, ZERO, Field, Ratio
 from .functions import KINKS
-from .laws import InputError, Node, need, num, parse, put, sym, symbols, walk
+from .laws import InputError, Node, need, num, parse, subs, sym, symbols, walk
 from .network import Flows, SingularError, Slot, flows
-from .parts import whole
+from .parts import stem
 from .prover import Claim, partial
 from .spec import Element, Spec
 
@@ -25,7 +25,7 @@ MAX_TEXT, MOST_SUMS, LANES, MAX_NAMES, MAX_CHAIN = 100_000, 2, 3, 1000, 50
 
 
 class _Published:
-    """The published text, parsed; no more sums over lanes are multiplied than can be checked."""
+    """The published text, parsed; raises if more sums are multiplied than can be checked."""
 
     def __init__(self, spec: Spec, system: Mapping[str, Any]) -> None:
         self.states = [(s["name"], s["element"], s["bank"]) for s in system["states"]]
@@ -42,13 +42,13 @@ class _Published:
             for tree in table.values():
                 self.sums(tree, 0)
         owners = [(s, name, spec.elements[name].lanes) for s, name in spec.states.items()]
-        expected = [(s, whole(name), own[0] if own else None) for s, name, own in owners]
+        expected = [(s, stem(name), own[0] if own else None) for s, name, own in owners]
         ports = {e.name for e in spec.of("source", "ambient", "heat")}
         tables = set(self.rates) == set(spec.states) and set(self.outputs) == ports
         need(self.states == expected and tables, "states or ports are not those of the spec")
 
     def sums(self, node: Node, depth: int) -> int:
-        """Return how many sums over lanes are multiplied at most."""
+        """Return the largest number of sums over lanes in a product."""
         need(depth <= MAX_CHAIN, "published names are defined by themselves")
         if node.op == "sym":
             if node.value in self.laws and node.value not in self.order:
@@ -62,18 +62,18 @@ class _Published:
             found = own[0] + max(own[1:])
         elif node.op in KINKS:
             found *= 2
-        whole = node.op not in ("/", "**") or (power > 0 and power.denominator == 1 and not own[1:])
-        need(whole or not own[-1], "a published divisor or root has a sum over lanes")
+        plain = node.op not in ("/", "**") or (power > 0 and power.denominator == 1 and not own[1:])
+        need(plain or not own[-1], "a published divisor or root has a sum over lanes")
         need(found * power <= MOST_SUMS, f"more than {MOST_SUMS} published sums are multiplied")
         return int(found * power)
 
 
 class Finding:
-    """What is found of a published system, and the laws and symbols of its network.
+    """The comparison of a published system with the laws of its network.
 
-    `reasons` by subject ("system", "energy"); `divisors` must not be zero, `values` must hold for
-    the energy, the sum of `terms`, to have a value; `letters` are functions of states.  By state,
-    `slopes` are slopes of the energy less co-states, to be looked at branch by branch.
+    `reasons` are by subject ("system", "energy"); `divisors` must not be zero; under `values` the
+    energy, the sum of `terms`, has a value; `letters` are functions of states; `slopes` are, by
+    state, slopes of the energy minus co-states that remain to be compared branch by branch.
     """
 
     def __init__(self, spec: Spec, system: Any) -> None:
@@ -92,14 +92,14 @@ class Finding:
             self.reasons.setdefault("system", f"the published system is not complete: {error}")
 
     def symbol(self, meaning: tuple[str, str], lane: int) -> Ratio:
-        """Return a symbol, with its lane if it has one."""
+        """Return the atom of a symbol, with its lane if it has one."""
         role, owner = meaning
         banks = {"p": self.spec.lists, "x": self.banks, "E": self.banks}.get(role, ())
         need(lane > 0 or owner not in banks, f"{owner!r} is of a lane, and stands outside of lanes")
         return self.field.of(sym((role, owner, lane) if owner in banks else (role, owner)))
 
     def law(self, element: Element, field: str, lane: int, *letters: Ratio) -> Ratio:
-        """Return a law of an element, its letter, and a slip's rate, being given."""
+        """Return a law of an element for values of its letter and, of a slip, its rate."""
         tree = element.law if field == "law" else element.laws.get(field, element.costate)
         own = dict(zip((("z", element.name), ("r", element.name)), letters, strict=False))
 
@@ -108,8 +108,8 @@ class Finding:
 
         return self.field.of(tree or num(0), word)
 
-    def like(self, slot: Slot) -> Ratio:
-        """Return how many lanes are like one, a symbol; 1 outside of banks."""
+    def weight(self, slot: Slot) -> Ratio:
+        """Return the symbol of the number of lanes like this one; 1 outside of banks."""
         bank = self.banks.get(slot[0], slot[0])
         return self.field.of(sym(("N", bank, slot[1]))) if slot[1] else ONE
 
@@ -118,17 +118,17 @@ class Finding:
         return self.symbol((role, self.spec.elements[owner].input if role == "u" else owner), lane)
 
     def published(self, node: Node, bound: Mapping[str, int]) -> Ratio:
-        """Return a published text; `bound` is the lane of each bank, 0 outside of lanes."""
+        """Return the normal form of a published text; `bound` is the lane of each bank."""
         return self.field.of(node, lambda part: self.word(part, bound))
 
     def word(self, node: Node, bound: Mapping[str, int]) -> Ratio:
-        """Return a sum over lanes, or what a published name stands for."""
+        """Return the normal form of a sum over lanes, or of a published name."""
         name = node.value
         if node.op == "sum":
             need(name in self.counts, f"{name!r} is no bank")
             lanes = range(1, self.counts[name] + 1)
             own = (self.published(node.args[0], {**bound, name: lane}) for lane in lanes)
-            return sum(map(mul, [self.like((name, lane)) for lane in lanes], own), ZERO)
+            return sum(map(mul, [self.weight((name, lane)) for lane in lanes], own), ZERO)
         if name in self.text.names:
             bank = self.text.names[name][2]
             lane = bound.get(bank, 0)
@@ -142,10 +142,10 @@ class Finding:
         return self.symbol((role, owner), bound.get(bank, 0))
 
     def _named(self, name: str, lane: int) -> Ratio:
-        """Return what a name is by its text; a co-state is itself, once it is compared."""
+        """Return the normal form of a name's law; a co-state is compared, and is a symbol."""
         owner, role, bank = self.text.names[name]
         found = self.published(self.text.laws[name], {bank: lane} if bank else {})
-        stores = [e for e in self.spec.elements.values() if whole(e.name) == owner and e.costate]
+        stores = [e for e in self.spec.elements.values() if stem(e.name) == owner and e.costate]
         if role not in ("costate", "temperature") or not stores:
             return found
         same = (e for e in stores if self.field.is_zero(found - self.law(e, "costate", lane)))
@@ -157,7 +157,7 @@ class Finding:
         return self.symbol(("T" if store.kind.form == "body" else "E", store.name), lane)
 
     def _check(self) -> None:
-        """Compare rates and outputs, and close the balances."""
+        """Compare rates and outputs, and check the power balance and the gradient."""
         own, power = flows(self.spec, self.counts, self), ZERO
         self._keep(own)
         for name, (y, inflow) in own.ports.items():
@@ -168,7 +168,7 @@ class Finding:
             element = self.spec.elements[name]
             given = self.published(self.text.rates[element.state], {self.banks.get(name, ""): lane})
             self._equal("system", given, rate, f"rate of {element.state}")
-            power -= self.like((name, lane)) * self._costate(element, lane) * given
+            power -= self.weight((name, lane)) * self._costate(element, lane) * given
         self._equal("energy", power, ZERO, "dU/dt - y^T u")
         self._gradient()
 
@@ -177,11 +177,11 @@ class Finding:
             self.reasons.setdefault(subject, f"{what} is not that of the network")
 
     def _keep(self, own: Flows) -> None:
-        """Keep the divisors, and each letter that is one of states of its own lane."""
+        """Store the divisors, and each letter that is a function of states of its own lane."""
         for pivot in own.pivots:
             tree = self.field.tree(pivot).args[0]
             lanes = {key[2:]: {k: sym(k[:2]) for k in symbols(tree)} for key in symbols(tree)}
-            self.divisors[put(tree, *lanes.values()) if len(lanes) == 1 else tree] = None
+            self.divisors[subs(tree, *lanes.values()) if len(lanes) == 1 else tree] = None
             self.field.nonzero |= {Ratio(factor) for factor, _ in pivot.top.factor()[1]}
         elements, owners = self.spec.elements, {"p": self.spec.lists, "E": self.banks}
         for (name, lane), letter in own.letters.items():
@@ -190,12 +190,12 @@ class Finding:
             words = {key: costates.get(key) or sym(key[:2]) for key in symbols(tree)}
             used = {(owners.get(k[0], {}).get(k[1], k[1]), k[2]) for k in words if k[2:]}
             if used <= {(self.banks.get(name), lane)}:
-                self.letters[name] = put(tree, words)
+                self.letters[name] = subs(tree, words)
 
     def _gradient(self) -> None:
-        """Compare the energy's derivatives, of sums by the state of one lane, with co-states."""
+        """Compare the energy's derivatives, in a bank by the state of one lane, with co-states."""
         energy, states = self.text.energy, self.spec.states
-        self.published(energy, {})  # whatever is of a lane is in a sum
+        self.published(energy, {})  # raises if a name of a lane stands outside of sums
         words = {name: self.spec.words.get(name, ("", "")) for name in symbols(energy)}
         known = all(role in ("p", "x") for role, _ in words.values())
         need(known, "the energy has other names than states and parameters")
@@ -206,7 +206,8 @@ class Finding:
             single = single and not {"if", *KINKS} & {*inside}
             need(part.op != "sum" or single, "a bank's energy has other states, or choices")
         terms = energy.args if energy.op == "+" else (energy,)
-        self.terms = [put(term, {name: sym(words[name]) for name in words}) for term in terms]
+        meanings = {name: sym(word) for name, word in words.items()}
+        self.terms = [subs(term, meanings) for term in terms]
         self.values.extend(claim for term in self.terms for claim in partial(term))
         for state, name in states.items():
             lane = int(name in self.banks)
@@ -214,9 +215,9 @@ class Finding:
             given = self.published(laws.derivative(energy, state), bound)
             own = self.law(self.spec.elements[name], "costate", lane)
             costate = self.spec.elements[name].costate or num(0)
-            slope = laws.derivative(put(energy, {n: sym(w) for n, w in words.items()}), ("x", name))
+            slope = laws.derivative(subs(energy, meanings), ("x", name))
             ops = {part.op for tree in (slope, costate) for part in walk(tree)}
             if lane or "sum" in ops or ops.isdisjoint({"if", *KINKS}):
                 self._equal("energy", given, own, f"dU/d{state}")
-            elif not self.field.is_zero(given - own):  # it may be so on each branch
+            elif not self.field.is_zero(given - own):  # they may still agree on each branch
                 self.slopes[state] = Node("+", (slope, Node("neg", (costate,)))), ("x", name)

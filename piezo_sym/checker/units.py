@@ -1,7 +1,7 @@
-"""Units of a spec, by pint: exact factors and dimensions, and the walk that compares them.
+"""Units of a spec by pint: exact factors and dimensions, and the check of trees.
 
 Input: texts such as ``N*s/m``, and trees with the dimension of every symbol.  Output: the factor to
-SI and the dimension of a unit, and the faults that a tree has.
+SI and the dimension of a unit, and the faults of a tree.
 """
 
 import re
@@ -31,7 +31,7 @@ def _registry() -> Any:
 def unit(text: str) -> tuple[Fraction, Dimension]:
     """Return the factor to SI and the dimension of a unit; raises `InputError` if it is none."""
     need(PLAIN.fullmatch(text), f"{text[:60]!r} is no unit")
-    try:  # as a law, whose names are no words of Python
+    try:  # parsed as a law; the prefix keeps names from being keywords of Python
         found = _read(parse(re.sub("[A-Za-z]+", r"unit_\g<0>", text.replace("^", "**")), 400))
         return Fraction(found.magnitude), found.dimensionality
     except (InputError, TypeError, AttributeError, ValueError, ArithmeticError, AssertionError):
@@ -61,7 +61,7 @@ def _read(node: Node) -> Any:
 
 
 def faults(tree: Node, units: Mapping[Any, Dimension], needed: Any, where: str) -> list[str]:
-    """Return the first fault of a tree's units, if there is one."""
+    """Return the first fault of a tree's units, or none."""
     try:
         fits = _dimension(tree, units) in (None, needed) or needed is None
         return [] if fits else [f"{where} has another unit than its row"]
@@ -70,7 +70,7 @@ def faults(tree: Node, units: Mapping[Any, Dimension], needed: Any, where: str) 
 
 
 def _dimension(node: Node, units: Mapping[Any, Dimension]) -> Dimension | None:
-    """Return the dimension of a tree; None if it is zero and fits any."""
+    """Return the dimension of a tree; None if it is zero, which has any."""
     pure = unit("1")[1]
     if node.op in ("num", "sym"):
         return units[node.value] if node.op == "sym" else pure if node.value else None
