@@ -106,12 +106,9 @@ class Lanes:
 
     def at(self, expr: sp.Expr, bank: str, lane: int) -> sp.Expr:
         """Return `expr` in lane number `lane` of `bank`: ``phi_j`` becomes ``phi_<lane>``."""
-        return expr.xreplace(
-            {
-                symbol: sp.Symbol(f"{symbol.quantity}_{lane}", **symbol.assumptions0)
-                for symbol in self.symbols(bank)
-            }
-        )
+        symbols = self.symbols(bank)
+        names = {s: sp.Symbol(f"{s.quantity}_{lane}", **s.assumptions0) for s in symbols}
+        return expr.xreplace(names)
 
     def expand(self, expr: sp.Expr, counts: Mapping[str, int]) -> sp.Expr:
         """Return `expr` with every sum over lanes written out, for banks of the given sizes."""

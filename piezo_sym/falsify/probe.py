@@ -89,7 +89,7 @@ class Probe:
         return self.written(self.laws[what, element])
 
     def behind(self, tree: Expr) -> set[str]:
-        """Return the names in a tree and in what they stand for, not in functions of the module."""
+        """Return the names in a tree and, without results of the module, in their definitions."""
         found, left = set[str](), [*names(tree)]
         while left:
             if (name := left.pop()) not in found:

@@ -48,17 +48,17 @@ class _Quantity(NamedTuple):
     value: Expr
 
 
-def in_words(found: Mapping[str, Sequence[V]]) -> dict[str, V]:
+def in_words(given: Mapping[str, Sequence[V]]) -> dict[str, V]:
     """Return values by the names of the symbols that element rows have for them.
 
     Parameters
     ----------
-    found : by kind: "rate" of each state; "drive" (z without temperatures) and "heat" of each
+    given : by kind: "rate" of each state; "drive" (z without temperatures) and "heat" of each
         process; "input" of Definition 1, "output" and "supply" of each port; "answer", two per
         coupling, see `Junction`.
     """
     return {
-        _symbol(kind, n).name: v for kind, values in found.items() for n, v in enumerate(values)
+        _symbol(kind, n).name: v for kind, values in given.items() for n, v in enumerate(values)
     }
 
 

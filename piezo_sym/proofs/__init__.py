@@ -60,7 +60,8 @@ def obligations(iphs: IPHS) -> tuple[Obligation, ...]:
     """Return the obligations of a system, each after those that it rests on."""
     assumptions = assumptions_of(iphs)
     return tuple(
-        with_temperatures(made.smooth(), assumptions) for made in _obligations(iphs, assumptions)
+        with_temperatures(obligation.smooth(), assumptions)
+        for obligation in _obligations(iphs, assumptions)
     )
 
 

@@ -62,9 +62,9 @@ def energy(iphs: IPHS, assumptions: Assumptions) -> Obligation:
     system = iphs.system
     balance = (system.E.T @ system.rhs - system.y.T @ system.u)[0, 0]
     found = (*_gradient(iphs, assumptions), Residual("dU/dt - y^T u", balance))
-    made = Obligation("energy", "", "dU/dt = y^T u", r"\dot U = y^\top u", residuals=found)
+    obligation = Obligation("energy", "", "dU/dt = y^T u", r"\dot U = y^\top u", residuals=found)
     laws = [Law("", "U", energy.law, derived=energy.derived) for energy in iphs.energies]
-    return made.asking(
+    return obligation.asking(
         lambda: (q for law in laws for q in jump_questions(law, assumptions)), "an energy"
     )
 
@@ -110,7 +110,7 @@ def exergy(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     rate = (system.y.T @ system.u)[0, 0] - common * (system.dS.T @ system.rhs)[0, 0]
     lost = sum(lam * (T - common) ** 2 / T for lam, T, _ in _exchanges(iphs))
     residual = (rate + common * system.sigma).xreplace(fixed) + lost.xreplace(fixed)
-    made = Obligation(
+    obligation = Obligation(
         "exergy",
         "",
         "d(U - T_e S)/dt <= 0 where other inputs are 0, T_e constant",
@@ -119,7 +119,7 @@ def exergy(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         residuals=(Residual("d(U - T_e S)/dt + T_e sigma + lam (T - T_e)^2/T", residual),),
         rests_on=(("sigma", ""),),
     )
-    yield made.asking(lambda: _exchange_questions(iphs, assumptions), "a conductance")
+    yield obligation.asking(lambda: _exchange_questions(iphs, assumptions), "a conductance")
 
 
 def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
@@ -133,7 +133,7 @@ def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     heat = {iphs.symbols[port.input]: sp.S.Zero for _, port in iphs.circuit.of(HeatInput)}
     residual = Residual("dS/dt + dS_e/dt - sigma - lam (T_e - T)^2/(T T_e)", total.xreplace(heat))
     counted = "environment counted" + ", heat sources 0" * bool(heat)
-    made = Obligation(
+    obligation = Obligation(
         "environment",
         "",
         f"sigma + lam (T_e - T)^2/(T T_e) >= 0, {counted}",
@@ -142,7 +142,7 @@ def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         residuals=(residual,),
         rests_on=(("sigma", ""),),
     )
-    yield made.asking(lambda: _exchange_questions(iphs, assumptions), "a conductance")
+    yield obligation.asking(lambda: _exchange_questions(iphs, assumptions), "a conductance")
 
 
 def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:

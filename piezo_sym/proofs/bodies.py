@@ -30,8 +30,10 @@ def temperature(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         tie = (Cmp("=", Sym(port.temperature), port.law),) if port.temperature in used else ()
         within = replace(assumptions, where=(*domain, *tie))
         statement, latex = "T > 0 and dT/dS > 0", r"T > 0,\quad \partial T/\partial S > 0"
-        made = Obligation("temperature", placed.element, statement, latex, assumptions.texts)
-        yield made.asking(partial(_temperature_questions, port.law, port.state, within), "the law")
+        obligation = Obligation("temperature", placed.element, statement, latex, assumptions.texts)
+        yield obligation.asking(
+            partial(_temperature_questions, port.law, port.state, within), "the law"
+        )
 
 
 def _temperature_questions(law: Expr, state: str, assumptions: Assumptions) -> Iterator[Question]:

@@ -8,8 +8,7 @@ from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from typing import final
 
-from piezo_sym.expressions.calculus import choices as by_cases
-from piezo_sym.expressions.calculus import clause, rule
+from piezo_sym.expressions.calculus import choices, clause, rule
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ONE,
@@ -118,15 +117,15 @@ def with_choices(node: Expr, known: Container[Cmp] = ()) -> Expr:
     if not isinstance(inner, Call) or inner.function not in KINKED:
         return inner
     if knots(inner):
-        return by_cases(inner)
+        return choices(inner)
     record, (z, *_), w = RECORDS[inner.function], inner.args, inner.args[-1]
-    made, wide = rule(record.choices, z, w), Cmp(">=", w, ZERO)
+    pieces, wide = rule(record.choices, z, w), Cmp(">=", w, ZERO)
     if not record.width or wide in known or (isinstance(w, Num) and w.value >= 0):
-        return made
-    return If(made, wide, with_choices(rule(record.formula, z, w)))
+        return pieces
+    return If(pieces, wide, with_choices(rule(record.formula, z, w)))
 
 
-def choices(node: Node) -> tuple[Cmp, ...]:
+def choice_conditions(node: Node) -> tuple[Cmp, ...]:
     """Return the distinct comparisons of a law's choices, outermost first."""
     return tuple(dict.fromkeys(n.condition for n in walk(node) if isinstance(n, If)))
 

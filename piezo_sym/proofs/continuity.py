@@ -22,7 +22,7 @@ from piezo_sym.proofs.branches import (
     Branch,
     TooManyBranchesError,
     branches,
-    choices,
+    choice_conditions,
     opposite,
     settled,
     value_conditions,
@@ -54,19 +54,17 @@ def continuous(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | 
         return None
     element, latex = own[0].element, r"W_k(z^-) = W_k(z^+)"
     statement = _statement(*own)
-    made = Obligation("continuous", element, statement, latex, assumptions.texts)
+    obligation = Obligation("continuous", element, statement, latex, assumptions.texts)
     tables = [law for law in own if not _has_choices(law.tree)]
-    alone = [
-        law for law in tables if not law.letter
-    ]  # laws with a letter have a row welldef anyway
-    valid = made.asking(
+    alone = [law for law in tables if not law.letter]  # others have a row welldef anyway
+    valid = obligation.asking(
         lambda: (q for law in alone for q in value_questions(law.tree, assumptions)),
         own[0].of_element,
     )
     if valid.open_because:
         return valid
     given = valid.questions or len(alone) < len(tables)
-    asked = made.asking(
+    asked = obligation.asking(
         lambda: (q for law in own for q in jump_questions(law, assumptions.about(law))),
         own[0].of_element,
     )
@@ -107,7 +105,8 @@ def jump_questions(law: Law, assumptions: Assumptions) -> Iterator[Question]:
 
 def _edges(law: Law, assumptions: Assumptions) -> list[Cmp]:
     """Return the conditions of a law's choices that parameters alone do not decide."""
-    return [c for c in choices(with_choices(law.tree)) if not {*names(c)} <= assumptions.fixed]
+    conditions = choice_conditions(with_choices(law.tree))
+    return [c for c in conditions if not {*names(c)} <= assumptions.fixed]
 
 
 def _has_choices(law: Expr) -> bool:

@@ -43,10 +43,10 @@ def domain_defined(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]
             known.append(tree)
 
     statement, latex = "the domain: each condition has a value", r"\mathcal{D}"
-    made = Obligation("welldef", "", statement, latex, assumptions.texts)
-    made = made.asking(questions, "a condition of the domain")
-    if made.questions or made.open_because:
-        yield made
+    obligation = Obligation("welldef", "", statement, latex, assumptions.texts)
+    obligation = obligation.asking(questions, "a condition of the domain")
+    if obligation.questions or obligation.open_because:
+        yield obligation
 
 
 def divisors(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
@@ -67,10 +67,10 @@ def _nonzero(divisor: sp.Expr, words: Mapping[str, Expr], assumptions: Assumptio
     text = spell(form)
     short = text if len(text) <= MOST_TEXT else f"{text[: MOST_TEXT - 3]}..."
     statement = f"{short} != 0: the junction laws divide by it"
-    made = Obligation("welldef", "", statement, r"\det \ne 0", assumptions.texts)
+    obligation = Obligation("welldef", "", statement, r"\det \ne 0", assumptions.texts)
     law = put(form, words)
     question = assumptions.question(f"{short} != 0", Cmp("!=", law, ZERO))
-    return made.asking(
+    return obligation.asking(
         lambda: (*value_questions(law, assumptions), *branch_questions(law, question)), short
     )
 

@@ -18,7 +18,7 @@ from piezo_sym.proofs.assumptions import Assumptions, Law
 from piezo_sym.proofs.branches import (
     TooManyBranchesError,
     branches,
-    choices,
+    choice_conditions,
     value_conditions,
     with_choices,
 )
@@ -57,7 +57,9 @@ def _energies(iphs: IPHS) -> Iterator[tuple[Placed, Law]]:
     for energy in iphs.energies:
         placed, _ = stores[energy.rows[0]]
         slopes = {claim for n in energy.rows for claim in _claims(stores[n][1].law)}
-        if choices(with_choices(energy.law)) or not slopes.issuperset(_claims(energy.law)):
+        if choice_conditions(with_choices(energy.law)) or not slopes.issuperset(
+            _claims(energy.law)
+        ):
             yield (
                 placed,
                 Law(placed.element, f"U_{placed.element}", energy.law, derived=energy.derived),
@@ -112,10 +114,10 @@ def welldef(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | Non
             order = dict.fromkeys((*about.order, *names(written)))
             yield from value_questions(written, replace(about, order=tuple(order)))
 
-    made = Obligation("welldef", element, statement, latex, assumptions.texts)
-    made = made.asking(questions, laws[0].of_element)
-    needed = made.questions or made.open_because or any(law.letter for law in laws)
-    return made if needed else None
+    obligation = Obligation("welldef", element, statement, latex, assumptions.texts)
+    obligation = obligation.asking(questions, laws[0].of_element)
+    needed = obligation.questions or obligation.open_because or any(law.letter for law in laws)
+    return obligation if needed else None
 
 
 def value_questions(law: Expr | Cmp, assumptions: Assumptions) -> tuple[Question, ...]:
@@ -163,7 +165,7 @@ def passive(law: Law, assumptions: Assumptions) -> Obligation:
     """State that a dissipative law takes power in: output times letter >= 0."""
     power = f"{law.name}*{law.letter}"
     assumptions = assumptions.about(law)
-    made = Obligation(
+    obligation = Obligation(
         "passive",
         law.element,
         f"{power} >= 0",
@@ -174,7 +176,7 @@ def passive(law: Law, assumptions: Assumptions) -> Obligation:
     )
     claim = Cmp(">=", mul(law.tree, Sym(law.letter)), ZERO)
     question = assumptions.question(f"{power} >= 0", claim)
-    return replace(made, questions=branch_questions(law.tree, question, law.letter))
+    return replace(obligation, questions=branch_questions(law.tree, question, law.letter))
 
 
 def branch_questions(law: Expr, question: Question, letter: str = "") -> tuple[Question, ...]:
@@ -210,10 +212,10 @@ def conducts(law: Law, assumptions: Assumptions) -> Obligation:
     question = assumptions.question(claim, Cmp(">=", law.tree, ZERO))
     statement = f"{claim}: heat flows from warm to cold"
     sign = SignOf(law.tree, "", assumptions.where)
-    made = Obligation(
+    obligation = Obligation(
         "passive", law.element, statement, r"\lambda \ge 0", assumptions.texts, sign=sign
     )
-    return made.asking(
+    return obligation.asking(
         lambda: (*value_questions(law.tree, assumptions), *branch_questions(law.tree, question)),
         law.of_element,
     )
@@ -222,7 +224,7 @@ def conducts(law: Law, assumptions: Assumptions) -> Obligation:
 def odd(law: Law, assumptions: Assumptions) -> Obligation:
     """State that a law is odd, which allows the mean law of the discrete gradient."""
     assumptions = assumptions.about(law)
-    made = Obligation(
+    obligation = Obligation(
         "odd",
         law.element,
         f"{law.name}(-{law.letter}) = -{law.name}({law.letter})",
@@ -237,9 +239,9 @@ def odd(law: Law, assumptions: Assumptions) -> Obligation:
         twice = reflected(turned, law.letter)  # the law, its signs placed as in `turned`
         total = ZERO if twice == neg(turned) else add(twice, turned)
     except ZeroDivisionError:
-        return replace(made, open_because=f"{law.of_element} divides by zero")
+        return replace(obligation, open_because=f"{law.of_element} divides by zero")
     original = Cmp("=", law.tree, neg(turned))
-    question = assumptions.question(made.statement, Cmp("=", total, ZERO), original)
+    question = assumptions.question(obligation.statement, Cmp("=", total, ZERO), original)
     mirror = substituted(law.tree, {law.letter: neg(Sym(law.letter))})
 
     def questions() -> Iterator[Question]:
@@ -248,7 +250,7 @@ def odd(law: Law, assumptions: Assumptions) -> Obligation:
         branches(total, assumptions.where)  # raises if there are too many
         yield from branch_questions(total, question) if total != ZERO else ()
 
-    return made.asking(questions, law.of_element)
+    return obligation.asking(questions, law.of_element)
 
 
 def rate_independent(law: Law, assumptions: Assumptions) -> Obligation:
@@ -256,7 +258,7 @@ def rate_independent(law: Law, assumptions: Assumptions) -> Obligation:
     assumptions, c = assumptions.about(law), Sym(fresh("c", assumptions.order))
     faster = substituted(law.tree, {law.rate: mul(c, Sym(law.rate))})
     slip, other = f"{law.name}({law.letter}", mul(c, law.tree)
-    made = Obligation(
+    obligation = Obligation(
         "rate-independent",
         law.element,
         f"{slip}, {c.name}*{law.rate}) = {c.name}*{slip}, {law.rate}) for {c.name} > 0",
@@ -268,8 +270,10 @@ def rate_independent(law: Law, assumptions: Assumptions) -> Obligation:
     )
     about = replace(assumptions, order=(*assumptions.order, c.name)).given(Cmp(">", c, ZERO))
     difference = add(faster, neg(other))
-    question = about.question(made.statement, Cmp("=", difference, ZERO), Cmp("=", faster, other))
-    return made.asking(lambda: branch_questions(difference, question), law.of_element)
+    question = about.question(
+        obligation.statement, Cmp("=", difference, ZERO), Cmp("=", faster, other)
+    )
+    return obligation.asking(lambda: branch_questions(difference, question), law.of_element)
 
 
 def _under(where: tuple[Cmp, ...]) -> str:

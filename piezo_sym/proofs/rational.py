@@ -86,7 +86,7 @@ class Parts:
         return _replaced(law, dict(self.words))
 
     def facts(self, nonzero: frozenset[str] = frozenset()) -> Iterator[Clause]:
-        """Yield facts on the parts; divisors made of `nonzero` names need no premise."""
+        """Yield facts on the parts; divisors symbol of `nonzero` names need no premise."""
         for part in self.parts:
             bottom = part.value.bottom
             if part.argument != part.value.top or bottom != ONE:
@@ -120,13 +120,13 @@ def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:
                 continue
             function, given, exponent = known
             value = ratio(_replaced(given, words))
-            made = Sym(name(f"{function}_{len(found) + 1}"))
+            symbol = Sym(name(f"{function}_{len(found) + 1}"))
             simple = isinstance(value.top, Sym | Num) and value.bottom == ONE
             argument = value.top if simple else Sym(name(f"{function}_argument_{len(found) + 1}"))
             if function == "quotient":
-                argument = made
-            found.append(Part(made.name, function, argument, value, exponent))
-            words[node] = made
+                argument = symbol
+            found.append(Part(symbol.name, function, argument, value, exponent))
+            words[node] = symbol
     return Parts(tuple(found), tuple(words.items()))
 
 

@@ -7,8 +7,8 @@ MUTANTS = mutants_of(
     r"""
 ## proofs/domain
 whether the domain has values is not asked
-  - made = made.asking(questions, "a condition of the domain")
-  + made = made.asking(tuple, "a condition of the domain")
+  - obligation = obligation.asking(questions, "a condition of the domain")
+  + obligation = obligation.asking(tuple, "a condition of the domain")
   = d*v | d > 0; sqrt(a/d) >= 0 | a=1.0
 ## proofs/continuity
 branches never meet
@@ -61,8 +61,8 @@ conduction has nothing to show
   + value_questions(law.tree, assumptions)
   = conduction
 a law has a value everywhere
-  - return made if needed else None
-  + return replace(made, questions=()) if needed else None
+  - return obligation if needed else None
+  + return replace(obligation, questions=()) if needed else None
   = d*v*a_1**2/a**2 | d > 0; a_1 > 0
 conditions have values everywhere
   - for part in (*branch.conditions, branch.value):

@@ -120,8 +120,8 @@ the right side of a quotient's comparison dropped
   + difference = ratio(condition.left)
   = d*v if v/v_1 < 1 else 2*d*v | d > 0; v_1 > 0
 all values of one function are one symbol
-  - made = Sym(name(f"{function}_{len(found) + 1}"))
-  + made = Sym(f"{function}_1")
+  - symbol = Sym(name(f"{function}_{len(found) + 1}"))
+  + symbol = Sym(f"{function}_1")
   = F_1*(exp(v/v_1) - exp(v/v_2)) | F_1 > 0; v_1 > v_2; v_2 > 0 | v_2=0.5
 all arguments of one function are one symbol
   - Sym(name(f"{function}_argument_{len(found) + 1}"))
