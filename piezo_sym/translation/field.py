@@ -1,11 +1,10 @@
 """Normal forms: sums of products of independent generators, with exact coefficients.
 
-Input: values of one `GeneratorField`.  Output: values of which equal ones have equal terms, as a
+Input: values of one `GeneratorField`.  Output: values of which equal ones have equal terms as a
 rule. Generators are names (of one lane, if they belong to a bank), smooth functions of values,
 powers of sums with exponents other than positive integers, sums over the lanes of a bank, letters
-and signs. A letter abbreviates one long value; it is written out only if a comparison fails
-without. ``sign(d, s)`` is 1 where d has the sign s, else 0; for each d exactly one of the three is
-1, and the square of a sign is the sign itself.
+and signs. A letter abbreviates a long value; it is written out only if a comparison fails without.
+``sign(d, s)`` is 1 where d has the sign s, else 0; one of the three is 1, and equals its square.
 """
 
 from __future__ import annotations
@@ -144,7 +143,7 @@ class GeneratorField:
     signed : generators that are positive (2) or not negative (1).
     counts : those that are sizes of banks, positive even outside the domain.
     assumed : other values of which the domain says the same.
-    signs, forms, factors, never, asked : results kept by `signs`, `zero` and `possible`.
+    signs, forms, factors, never, asked, zeros : kept by `signs`, `zero` and `possible`.
     unknown : how often a solver gave no answer.
     work : how many products of two terms were formed.
     """
@@ -167,6 +166,7 @@ class GeneratorField:
         self.factors: dict[Value, list[tuple[Value, int]]] = {}
         self.never: dict[tuple[Value, int, Value, int], bool] = {}
         self.asked: dict[frozenset[tuple[Value, int]], bool] = {}
+        self.zeros: set[tuple[Value, frozenset[Value]]] = set()
         self.unknown = 0
 
     def number(self, value: Exponent) -> Value:

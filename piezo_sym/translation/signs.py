@@ -90,6 +90,7 @@ def reading(field: GeneratorField, function: str) -> Iterator[None]:
         yield
         return
     kept = field.signed, field.assumed, field.signs, field.forms, field.never, field.asked
+    zeros, field.zeros = field.zeros, set()
     outside, field.outside = field.outside, function
     field.signed, field.assumed = dict(field.counts), {field.zero: 1}
     field.signs, field.forms, field.never, field.asked = {}, {}, {}, {}
@@ -97,6 +98,7 @@ def reading(field: GeneratorField, function: str) -> Iterator[None]:
         yield
     finally:
         field.signed, field.assumed, field.signs, field.forms, field.never, field.asked = kept
+        field.zeros = zeros
         field.outside = outside
 
 

@@ -24,9 +24,12 @@ Edges = frozenset[Value]
 
 def is_zero(value: Value, *, edges: Edges = frozenset()) -> bool:
     """Return whether a value is shown to be zero, except where a difference in `edges` is zero."""
+    if (value, edges) in value.field.zeros:
+        return True
     letters = [g for g in value.parts if value.field.gens[g].kind == "letter"]
     try:
         if _is_zero(value, edges=edges):
+            value.field.zeros.add((value, edges))
             return True
     except NotShownError:
         if not letters:
