@@ -60,7 +60,7 @@ class Worker:
         with self._lock:
             try:
                 self._start()
-                watch = threading.Timer(seconds, self._kill, (late,))
+                watch = threading.Timer(seconds, self._stop, (late,))
                 watch.start()
                 try:
                     yield from self._exchange(request, is_last)
@@ -79,14 +79,14 @@ class Worker:
 
     def close(self) -> None:
         """Stop the process; the next request starts another."""
-        if self.process is None:
+        process, self.process = self.process, None  # another thread may close it, too
+        if process is None:
             return
-        self._kill(threading.Event())
-        self.process.wait()
-        for pipe in (self.process.stdin, self.process.stdout):
+        self._kill(process)
+        process.wait()
+        for pipe in (process.stdin, process.stdout):
             with suppress(OSError):  # of what was not sent
                 pipe and pipe.close()
-        self.process = None
 
     def forget(self) -> None:
         """Leave the process to the one that this one is a copy of; start another when asked."""
@@ -105,8 +105,9 @@ class Worker:
             )
 
     def _exchange(self, request: bytes, is_last: Callable[[bytes], bool]) -> Iterator[bytes]:
-        assert self.process is not None
-        to, back = self.process.stdin, self.process.stdout
+        if (process := self.process) is None:  # another thread has closed it
+            raise EOFError
+        to, back = process.stdin, process.stdout
         assert to is not None
         assert back is not None
         to.write(request + b"\n")
@@ -119,13 +120,16 @@ class Worker:
             if is_last(line):
                 return
 
-    def _kill(self, done: threading.Event) -> None:
-        done.set()
-        assert self.process is not None
+    def _stop(self, late: threading.Event) -> None:
+        late.set()
+        if process := self.process:
+            self._kill(process)
+
+    def _kill(self, process: subprocess.Popen[bytes]) -> None:
         with suppress(ProcessLookupError):
             if self.group:
-                os.killpg(self.process.pid, signal.SIGKILL)
-            self.process.kill()
+                os.killpg(process.pid, signal.SIGKILL)
+            process.kill()
 
 
 _workers: WeakSet[Worker] = WeakSet()

@@ -5,6 +5,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import threading
 import time
 from contextlib import suppress
 
@@ -224,3 +225,25 @@ def test_who_is_stopped_leaves_no_examination_behind():
         raise KeyboardInterrupt
     assert ended(left)
     assert examined_model(load("oscillator")).proved
+
+
+def test_two_threads_may_close_a_process():
+    """One whose request failed, and one that wants it stopped."""
+    slow = Worker("-c", "import time; time.sleep(600)")
+    slow.start()
+    waiting, process = threading.Event(), slow.process
+    wait = process.wait
+
+    def waited(*args, **kwargs):
+        waiting.set()
+        time.sleep(0.1)
+        return wait(*args, **kwargs)
+
+    process.wait = waited
+    first = threading.Thread(target=slow.close)
+    first.start()
+    assert waiting.wait(60)
+    slow.close()
+    first.join()
+    assert slow.process is None
+    assert process.poll() is not None
