@@ -1,7 +1,8 @@
 """Integrals that SymPy finds: ``python -m piezo_sym.algebra.integrals`` is the process that looks.
 
 Input: a smooth law and a name.  Output: a tree whose derivative is shown to be the law, or None.
-The process ends itself after `SECONDS`, whatever SymPy does, and its memory is limited.
+The process ends itself after `SECONDS`, whatever SymPy does, and its memory is limited.  It is
+processor time: what else the machine does must not decide which laws have an energy.
 """
 
 import json
@@ -20,7 +21,7 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Expr, names
 
-#: Seconds for SymPy, seconds for the process with its start, and bytes of its memory.
+#: Seconds of processor time for SymPy, seconds by the clock for the process, bytes of its memory.
 SECONDS, WITH_START, MEMORY = 5, 60, 4 << 30
 #: Functions that the law language lacks, which are rewritten with logarithms.
 BY_LOGARITHMS = (sp.asinh, sp.acosh, sp.atanh, sp.asech, sp.acsch, sp.acoth)
@@ -78,8 +79,8 @@ def main() -> None:
     """Answer the one request on stdin; the exit status tells whether there is an answer."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
     request = json.load(sys.stdin)
-    signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.alarm(SECONDS)
+    signal.signal(signal.SIGPROF, signal.SIG_DFL)
+    signal.setitimer(signal.ITIMER_PROF, SECONDS)
     answer = _antiderivative(*request)
     if answer is None:
         sys.exit(1)

@@ -1,5 +1,7 @@
 """Springs that are odd in their length: the energy is a function of its magnitude."""
 
+import subprocess
+import sys
 from math import exp, sqrt
 
 import numpy as np
@@ -58,6 +60,22 @@ def test_it_is_proved_and_has_the_energy_of_quadrature(law):
     )
     for q in (-0.9, -0.2, 0.1, 0.6):
         assert U(q) - U(0.0) == pytest.approx(quad(lambda z: force(law, z), 0, q)[0], rel=1e-9)
+
+
+BUSY = """
+import time
+from piezo_sym.algebra import integrals
+integrals.SECONDS, find = 1, integrals._found
+integrals._found = lambda *request: time.sleep(1.2) or find(*request)
+integrals.main()
+"""
+
+
+def test_what_a_busy_machine_does_to_the_search_does_not_decide_what_has_an_energy():
+    """It is given processor time: sleep stands for a search that gets none for a while."""
+    command, request = [sys.executable, "-c", BUSY], '["2*q", "q", []]'
+    done = subprocess.run(command, input=request, capture_output=True, text=True, check=True)
+    assert done.stdout == "q**2\n"
 
 
 @pytest.mark.some(2)
