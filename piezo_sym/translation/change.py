@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.expressions import PLAIN, Expressions, Read
-from piezo_sym.translation.field import Generator, GeneratorField, NotShownError, Value
+from piezo_sym.translation.field import Exponent, Generator, GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import call, power
 from piezo_sym.translation.signs import compare, on_path, sign_of
 
@@ -24,14 +24,15 @@ def put(value: Value, new: Mapping[int, Value]) -> Value:
     field = value.field
     if value.parts.isdisjoint(new):
         return value
-    parts = []
+    parts, powers = [], dict[tuple[int, Exponent], Value]()
     with on_path(field, None):
         for mono, c in value.terms.items():
-            term = field.number(c)
-            for g, e in mono:
-                same = field.gens[g].parts.isdisjoint(new)
-                factor = Value(field, {((g, e),): 1}) if same else None
-                term = term * (factor or power(_put(field, g, new), Fraction(e)))
+            kept = tuple(p for p in mono if field.gens[p[0]].parts.isdisjoint(new))
+            term = Value(field, {kept: c})
+            for g, e in (p for p in mono if p not in kept):
+                if (g, e) not in powers:
+                    powers[g, e] = power(_put(field, g, new), Fraction(e))
+                term = term * powers[g, e]
             parts.append(term)
         return field.total(parts)
 

@@ -94,9 +94,12 @@ def vanishes(value: Value) -> bool:
 
     Powers of sums are written out, and letters if it has terms without.
     """
+    if not value.terms:
+        return True
     roots = _Roots(value)
-    tried = (roots.numerator(value, kinds) for kinds in (("power",), ("power", "letter")))
-    return not value.terms or any(found.is_zero() for found in tried)
+    spelled = any(roots.gens[g].kind == "letter" for g in roots.order)
+    ways = (("power",), ("power", "letter"))[: 1 + spelled]
+    return any(roots.numerator(value, kinds).is_zero() for kinds in ways)
 
 
 def vanishes_with(value: Value, other: Value) -> bool:

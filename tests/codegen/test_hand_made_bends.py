@@ -115,7 +115,7 @@ def test_balances_close_over_contacts(bounce, way):
 @pytest.mark.parametrize("way", FIXED, ids=str)
 def test_they_would_not_without_the_split(way, tmp_path):
     module = Plain(**{**vars(BOUNCE), "name": "plain"}).module(tmp_path)
-    assert ran(module, **way)[2] > 1e-5
+    assert ran(module, **way)[2] > 1e-6
 
 
 @pytest.mark.parametrize("order", tiers([2, 4, 6, 10], 0, 2))

@@ -223,8 +223,8 @@ def test_a_dissipative_start_takes_stops_too(made):
     """With efforts of a step's end: a stop that just yields is as one that just does not."""
 
     def heats(r, steps):
-        inputs, how = {"F": 15.0}, {"step": 2e-2, "every": 1, "dissipative_start": True}
-        given = {"inputs": inputs, "parameters": {"r": r}, **how}
+        how = {"step": 2e-2, "times": steps + 1, "dissipative_start": True}
+        given = {"inputs": {"F": 15.0}, "parameters": {"r": r}, **how}
         return simulate(made["stopped"], duration=2e-2 * steps, **given)
 
     run = heats(5e-4, 10)

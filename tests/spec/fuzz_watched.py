@@ -66,7 +66,7 @@ def main() -> None:
     seed, laws, specs = map(int, sys.argv[1:])
     for text in spec_texts(seed + 1, 30):  # whatever is imported when first needed is, now
         fault(parse, text, Model)
-    parse_unit("mm")
+    parse_unit("inch")  # not in the tables of units: pint knows it
     events.clear()
     sys.addaudithook(watch)
     faults, slowest = [], (0.0, "")

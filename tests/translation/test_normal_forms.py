@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from piezo_sym.translation.change import spelled
+from piezo_sym.translation.change import put, spelled
 from piezo_sym.translation.expressions import PLAIN, Expressions
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.numerator import vanishes, vanishes_with
@@ -154,3 +154,16 @@ def test_what_vanishes_with_a_difference_is_not_divided_by_it(text, shown, abbre
     value, other = (read.numeric(ast.parse(t, mode="eval").body)[0] for t in (text, "x - y"))
     value = field.generator("letter", value) if abbreviated else value
     assert vanishes_with(value, other) == shown
+
+
+def test_a_power_of_what_a_name_stands_for_is_worked_out_once():
+    """In a Jacobian the same power is a factor of hundreds of terms."""
+    field = GeneratorField()
+    a, *names = (field.name(f"n{n}") for n in range(13))
+    power, long = field.whole_power(a, 3), field.total(names)
+    value, (g,) = field.total(name * power for name in names), a.parts
+    field.work = 0
+    found = put(value, {g: long})
+    one = field.whole_power(long, 3)
+    assert found == field.total(name * one for name in names)
+    assert field.work < 4 * len(names) * len(one.terms)
