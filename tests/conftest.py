@@ -1,6 +1,8 @@
 """Property tests draw the same examples in every run; all workers share one cache of their own."""
 
+import hashlib
 import os
+import pickle
 import resource
 import shutil
 import signal
@@ -55,25 +57,72 @@ def _shared_cache(shared_folder):
         yield
 
 
+#: The compiler that the package finds: what was compiled once, of the same texts by the same words,
+#: is copied, whoever asks.
+COMPILES = """
+case "$*" in
+{kept}) ;;
+*/.build-*) set -- "$@" {flags} ;;
+*) exec {real} "$@" ;;
+esac
+PATH=$PATH:{path}
+for word; do
+  test "$before" = -o && out=$word
+  before=$word
+done
+folder=${{out%/*}}
+key=$({{ printf '%s\\n' "$@" | sed "s|$folder||"; cat "$folder"/*.[ch]; }} | {digest})
+known={store}/${{key%% *}}
+test -f "$known" && exec cp "$known" "$out"
+{real} "$@" && cp "$out" "$known.$$" && mv "$known.$$" "$known"
+"""
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _quick_compiler(request, shared_folder):
-    """Compile all runs but those of LONG_RUNS without optimization, in a fifth of the time.
+    """Compile texts once, and all but those of LONG_RUNS without optimization, in a fifth of the time.
 
     Networks as for a user: `test_run_compilers.py`, and all tests with ``-m "long or not long"``.
     """
-    real = shutil.which("cc")
-    if not real or request.config.option.markexpr != "not long":
+    real, digest = shutil.which("cc"), shutil.which("sha256sum") or shutil.which("shasum")
+    if not real or not digest:
         yield
         return
     folder = shared_folder / "quick"
-    folder.mkdir(exist_ok=True)
-    built = "*/.build-*"  # what the engine builds
-    kept = "|".join(f"{built}/{name}.*" for name in LONG_RUNS)
-    script = f'case "$*" in {kept});; {built}) set -- "$@" -O0;; esac\nexec {real} "$@"'
+    (folder / "store").mkdir(parents=True, exist_ok=True)
+    quick = request.config.option.markexpr == "not long"
+    script = COMPILES.format(
+        kept=" | ".join(f"*/.build-*/{name}.*" for name in LONG_RUNS),
+        flags="-O0" if quick else "",
+        real=real,
+        path=os.defpath,
+        digest=digest,
+        store=folder / "store",
+    )
     write_script(folder / f"cc-{os.getpid()}", script).replace(folder / "cc")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PATH", f"{folder}{os.pathsep}{os.environ['PATH']}")
         yield
+
+
+@pytest.fixture
+def known_reports(shared_folder, monkeypatch):
+    """Examine a model once for all tests that are about what is done with the report on it."""
+    from piezo_sym.verification import process
+
+    folder, examined_model = shared_folder / "reports", process.examined_model
+    folder.mkdir(exist_ok=True)
+
+    def known(model):
+        said = repr(model.model_dump()).encode()
+        path = folder / hashlib.sha256(said).hexdigest()
+        if not path.is_file():
+            made = path.with_suffix(f".{os.getpid()}")
+            made.write_bytes(pickle.dumps(examined_model(model)))
+            made.replace(path)
+        return pickle.loads(path.read_bytes())
+
+    monkeypatch.setattr(process, "examined_model", known)
 
 
 def forget():

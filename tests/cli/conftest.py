@@ -18,6 +18,11 @@ class Answer(NamedTuple):
     err: str
 
 
+@pytest.fixture(autouse=True)
+def _known_reports(known_reports):
+    """Nothing here is about how a model is examined, but for what is said of it."""
+
+
 @pytest.fixture
 def call(capsys):
     """Run a command line and return its exit code and output."""
