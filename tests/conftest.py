@@ -38,7 +38,7 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.long)
 
 
-#: Models of which tests take so many steps that optimization pays.
+#: Models of which tests take so many steps that some optimization pays.
 LONG_RUNS = ("piezo_stack", "stack_bouc_wen", "led")
 
 
@@ -57,11 +57,11 @@ def _shared_cache(shared_folder):
         yield
 
 
-#: The compiler that the package finds: what was compiled once, of the same texts by the same words,
-#: is copied, whoever asks.
+#: A compiler whose results are kept: what was compiled once, of the same texts by the same words,
+#: is copied, whoever asks. `few` are flags for runs of many steps, `flags` for others.
 COMPILES = """
 case "$*" in
-{kept}) ;;
+{long}) set -- "$@" {few} ;;
 */.build-*) set -- "$@" {flags} ;;
 *) exec {real} "$@" ;;
 esac
@@ -78,30 +78,35 @@ test -f "$known" && exec cp "$known" "$out"
 """
 
 
+#: Where the compilers of this machine are, before tests put others in their place.
+FOUND = {name: path for name in ("cc", "gcc", "clang") if (path := shutil.which(name))}
+DIGEST = shutil.which("sha256sum") or shutil.which("shasum")
+
+
+def write_compiler(folder, name, shared, flags, few):
+    """Write a compiler of this machine into a folder, if there is one, with flags added."""
+    if name in FOUND and DIGEST:
+        (shared / "compiled").mkdir(exist_ok=True)
+        folder.mkdir(exist_ok=True)
+        script = COMPILES.format(
+            long=" | ".join(f"*/.build-*/{model}.*" for model in LONG_RUNS),
+            **{"few": few, "flags": flags, "real": FOUND[name]},
+            **{"path": os.defpath, "digest": DIGEST, "store": shared / "compiled"},
+        )
+        write_script(folder / f"{name}-{os.getpid()}", script).replace(folder / name)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _quick_compiler(request, shared_folder):
-    """Compile texts once, and all but those of LONG_RUNS without optimization, in a fifth of the time.
+    """Compile the same texts once, and without optimization, in a fifth of the time.
 
     Networks as for a user: `test_run_compilers.py`, and all tests with ``-m "long or not long"``.
     """
-    real, digest = shutil.which("cc"), shutil.which("sha256sum") or shutil.which("shasum")
-    if not real or not digest:
-        yield
-        return
-    folder = shared_folder / "quick"
-    (folder / "store").mkdir(parents=True, exist_ok=True)
     quick = request.config.option.markexpr == "not long"
-    script = COMPILES.format(
-        kept=" | ".join(f"*/.build-*/{name}.*" for name in LONG_RUNS),
-        flags="-O0" if quick else "",
-        real=real,
-        path=os.defpath,
-        digest=digest,
-        store=folder / "store",
-    )
-    write_script(folder / f"cc-{os.getpid()}", script).replace(folder / "cc")
+    flags = ("-O0", "-O1") if quick else ("", "")
+    write_compiler(shared_folder / "quick", "cc", shared_folder, *flags)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PATH", f"{folder}{os.pathsep}{os.environ['PATH']}")
+        patch.setenv("PATH", f"{shared_folder / 'quick'}{os.pathsep}{os.environ['PATH']}")
         yield
 
 
@@ -177,10 +182,10 @@ def write_script(path, text):
 
 
 @pytest.fixture
-def quick_compiler(tmp_path, monkeypatch):
-    """A compiler that never optimizes: who compiles, where to and how often is the same."""
-    if real := shutil.which("cc"):
-        (tmp_path / "quick").mkdir()
-        write_script(tmp_path / "quick" / "cc", f'exec {real} "$@" -O0')
+def quick_compiler(tmp_path, shared_folder, monkeypatch):
+    """Compilers that never optimize: who compiles, where to and how often is the same."""
+    if shutil.which("cc"):
+        for name in FOUND:
+            write_compiler(tmp_path / "quick", name, shared_folder, "-O0", "-O0")
         monkeypatch.setenv("PATH", f"{tmp_path / 'quick'}{os.pathsep}{os.environ['PATH']}")
         monkeypatch.delenv("CC", raising=False)

@@ -18,9 +18,7 @@ def drive(frequency):
 
 @pytest.fixture(scope="module")
 def found():
-    return steady_branches(
-        "piezo_stack", inputs=drive, frequencies=(45.0, 110.0), temperatures=SPAN
-    )
+    return steady_branches("piezo_stack", inputs=drive, frequencies=(60.0, 75.0), temperatures=SPAN)
 
 
 def states(frequency):
@@ -47,7 +45,7 @@ def test_steady_states_come_and_go_at_the_jump(found):
 
 def test_points_are_steady_states(found):
     for curve in found.curves:
-        for point in curve[:: len(curve) // 3]:
+        for point in curve[:: len(curve) // 2]:
             f = point.frequency
             near = point.state.temperature
             (alone,) = periodic_steady_states(
@@ -64,7 +62,7 @@ def test_points_are_steady_states(found):
 
 def test_curves_reach_the_ends_of_the_range(found):
     ends = sorted(round(curve[n].frequency, 6) for curve in found.curves for n in (0, -1))
-    assert ends == [45.0, 45.0, 45.0, 110.0]
+    assert ends == [60.0, 60.0, 60.0, 75.0]
     for curve in found.curves:
         steps = [np.abs(b.place - a.place).max() for a, b in itertools.pairwise(curve)]
         assert max(steps) < 0.31

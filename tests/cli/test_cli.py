@@ -84,7 +84,7 @@ def test_too_little_memory_is_one_line(refused, monkeypatch):
 
 
 def test_the_package_runs_as_a_program(tmp_path):
-    words = [sys.executable, "-W", "error", "-m", "piezo_sym", "verify", "piezo_stack", "--json"]
+    words = [sys.executable, "-W", "error", "-m", "piezo_sym", "verify", "oscillator", "--json"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
         words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
@@ -94,20 +94,12 @@ def test_the_package_runs_as_a_program(tmp_path):
 
 
 def test_the_program_leaves_with_its_exit_code(tmp_path):
-    words = [
-        sys.executable,
-        "-m",
-        "piezo_sym",
-        "generate",
-        "piezo_stack",
-        "--check",
-        "--out",
-        "none",
-    ]
+    generate = ["generate", "oscillator", "--check", "--out", "none"]
+    words = [sys.executable, "-m", "piezo_sym", *generate]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
         words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 1
-    first = "piezo_stack"
+    first = "oscillator"
     assert done.stderr.startswith(f"piezo-sym: 'none/{first}/{first}.py': is missing")

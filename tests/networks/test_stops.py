@@ -233,8 +233,9 @@ def test_without_a_limit_there_is_no_force():
     assert np.abs(run.heat_stop.values).max() <= 1e-30
 
 
-@pytest.mark.some(1)
-@pytest.mark.parametrize("steps", [{"step": 1e-3}, {"rtol": 1e-4}], ids=str)
+@pytest.mark.parametrize(
+    "steps", [{"step": 1e-3}, pytest.param({"rtol": 1e-4}, marks=pytest.mark.long)], ids=str
+)
 def test_ten_thousand_stops_run(steps):
     """After a large way they all stand at their limits, first at one, then at the other."""
     limits = np.linspace(1.0, 50.0, 10_000)

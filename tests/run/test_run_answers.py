@@ -21,20 +21,18 @@ CASE_P = {  # at t = 0.1 s, and the scale of its error
 }
 
 
-@pytest.fixture(scope="module", params=["LSODA", "Radau"])
+@pytest.fixture(scope="module", params=["LSODA", pytest.param("Radau", marks=pytest.mark.long)])
 def case_p(request, piezo):
     drive = {"V_in": sine(100, 100), "T_e": 298.15}
     return simulate(piezo, inputs=drive, duration=0.1, rtol=1e-9, method=request.param, times=20001)
 
 
-@pytest.mark.some(1)
 def test_case_p(case_p):
     for name, (value, scale) in CASE_P.items():
         error = np.max(np.abs(case_p[name].values[-1] - value)) / scale
         assert error < 1e-6, name
 
 
-@pytest.mark.some(1)
 def test_case_p_closes_its_ledger(case_p):
     gross = np.abs(case_p.supplied_supply).max() + np.abs(case_p.supplied_ambient).max()
     assert gross > 20

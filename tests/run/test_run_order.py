@@ -44,9 +44,12 @@ def orders(errors):
     return -np.diff(np.log2(errors))
 
 
-@pytest.mark.some(1)
 @pytest.mark.parametrize(
-    ("spec", "duration", "longest", "options"), SMOOTH, ids=[Path(row[0]).stem for row in SMOOTH]
+    ("spec", "duration", "longest", "options"),
+    [
+        pytest.param(*row, id=Path(row[0]).stem, marks=[pytest.mark.long] if n else [])
+        for n, row in enumerate(SMOOTH)
+    ],
 )
 def test_orders_of_smooth_systems(spec, duration, longest, options):
     model, module = load(spec), module_of(load(spec))

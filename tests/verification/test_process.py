@@ -46,14 +46,14 @@ def test_a_report_is_that_of_the_system():
 
 
 def test_what_takes_too_long_is_stopped_and_the_next_one_is_answered(examiner):
-    model = load("piezo_stack")
+    model = load("oscillator")
     assert list(messages(examiner, model, 0.01)) == ["not decided in 0.01 s"]
     assert {type(m) for m in messages(examiner, model, 60.0)} == {Template, Report}
 
 
 def test_what_is_not_decided_in_time_is_open(monkeypatch):
     monkeypatch.setattr(process, "PATIENCE", 0.01)
-    report = examined_model(load("piezo_stack"))
+    report = examined_model(load("oscillator"))
     assert not report.proved
     assert {row.verdict for row in report.rows} == {Verdict.OPEN}
     assert "not decided in 0.01 s" in report.rows[0].reason
