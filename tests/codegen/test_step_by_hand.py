@@ -44,7 +44,7 @@ def test_one_step(lanes, h):
         assert np.abs((found - wanted) / scales).max() <= 1e-10
 
 
-@pytest.mark.parametrize("h", [2e-6, 1e-5])
+@pytest.mark.parametrize("h", [pytest.param(2e-6, marks=pytest.mark.long), 1e-5])
 def test_a_run_and_its_ledger(h):
     """A hundred steps from rest through the edge of the dead zone, and what they book."""
     x = np.array([0.0, 0.0, 0.0, 0.0, 0.0, P.c_0 * np.log1p(2.0 / P.T_0)])

@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 
@@ -36,9 +37,10 @@ def foreign(path: Path) -> set[str]:
     return {name.split(".")[0] for name in imported(path, path.stem)}
 
 
-def imported(path: Path, module: str) -> set[str]:
+@cache
+def imported(path: Path, module: str) -> frozenset[str]:
     """Return the dotted names a file imports: ``from a import b`` is ``a.b``."""
-    found = set()
+    found: set[str] = set()
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
     for node in executed(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -47,7 +49,7 @@ def imported(path: Path, module: str) -> set[str]:
             base = ".".join(package.split(".")[: len(package.split(".")) + 1 - node.level])
             home = ".".join(filter(None, [base if node.level else "", node.module]))
             found |= {f"{home}.{alias.name}" for alias in node.names}
-    return found
+    return frozenset(found)
 
 
 def executed(node: ast.AST) -> Iterator[ast.AST]:

@@ -9,6 +9,7 @@ import threading
 import time
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
@@ -230,10 +231,22 @@ def test_a_word_of_the_solver_is_a_name_like_others(name, word):
     assert solver(name).ask(query("", (word,), ((order,), (below,)), below)).result == "unsat"
 
 
-def test_work_is_limited_and_the_limit_is_said():
+@pytest.mark.long
+def test_work_is_limited():
     answer = solver("z3").ask(claim(HARD))
     assert answer.result == "unknown"
     assert "resource limit" in answer.reason or "took more than 20 s" in answer.reason
+
+
+def test_the_limit_of_work_is_said():
+    """A smaller one, as far as the process goes the same."""
+    folder = Path(solvers.__file__).parent
+    code = f"import sys; sys.path.insert(0, {str(folder)!r}); import worker; "
+    made = Worker("-Ec", f"{code}worker.Z3_LIMIT //= 20; worker.main()", "z3")
+    answer = Solver("z3", made).ask(claim(HARD))
+    made.close()
+    assert answer.result == "unknown"
+    assert "resource limit" in answer.reason
 
 
 @pytest.mark.parametrize("name", ["z3", "cvc5"])

@@ -69,7 +69,9 @@ def test_a_short_step_goes_where_the_rates_lead(spec, stages):
 
 
 @pytest.mark.some(8)
-@pytest.mark.parametrize("spec", [s for s in ALL if Path(s).stem != "dry_friction"])
+@pytest.mark.parametrize(
+    "spec", [s for s in ALL if Path(s).stem != "dry_friction"], ids=lambda spec: Path(spec).stem
+)
 def test_newtons_method_has_the_right_matrix(spec):
     """A step of a part of the fastest time constant: with a wrong entry it would take a dozen."""
     system, x = prepared(spec)
