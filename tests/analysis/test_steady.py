@@ -257,8 +257,9 @@ def test_a_long_run_ends_there():
         assert float(run[name][-1]) == pytest.approx(found.initial[name], abs=1e-4 * size)
 
 
-@pytest.mark.some(1)
-@pytest.mark.parametrize("which", [0, 2], ids=["cool", "hot"])
+@pytest.mark.parametrize(
+    "which", [pytest.param(0, id="cool"), pytest.param(2, id="hot", marks=pytest.mark.long)]
+)
 def test_another_solver_finds_the_same_orbit(at_50, which):
     state = at_50[which]
     drive = {"inputs": {"V_in": sine(100, 50)}, "initial": state.initial, "duration": 0.02}
