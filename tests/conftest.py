@@ -110,9 +110,9 @@ def _quick_compiler(request, shared_folder):
         yield
 
 
-@pytest.fixture
-def known_reports(shared_folder, monkeypatch):
-    """Examine a model once for all tests that are about what is done with the report on it."""
+@pytest.fixture(scope="module")
+def known_reports(shared_folder):
+    """Examine a model once for all modules of tests that say so: the report is always the same."""
     from piezo_sym.verification import process
 
     folder, examined_model = shared_folder / "reports", process.examined_model
@@ -127,7 +127,9 @@ def known_reports(shared_folder, monkeypatch):
             made.replace(path)
         return pickle.loads(path.read_bytes())
 
-    monkeypatch.setattr(process, "examined_model", known)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(process, "examined_model", known)
+        yield
 
 
 def forget():
