@@ -14,10 +14,10 @@ from piezo_sym.run.engine.records import LONG, ParameterRecords, c_record
 STEPS = ("signal", "segment", "run", "tape", "task", "stepper")
 
 
-def layout_in_c(kind: str, fields: list[str]) -> str:
+def layout_in_c(kind: str, fields: list[str], name: str = "layout") -> str:
     """Return C that says where fields lie, and how long the record is."""
-    places = ", ".join(f"(long)offsetof({kind}, {name})" for name in fields)
-    return f"\n#include <stddef.h>\nconst long layout[] = {{{places}, (long)sizeof({kind})}};\n"
+    places = ", ".join(f"(long)offsetof({kind}, {field})" for field in fields)
+    return f"\n#include <stddef.h>\nconst long {name}[] = {{{places}, (long)sizeof({kind})}};\n"
 
 
 def layout_in_python(structure) -> list[int]:
@@ -25,13 +25,13 @@ def layout_in_python(structure) -> list[int]:
     return [*places, ctypes.sizeof(structure)]
 
 
-def compiled_layout(folder: Path, sources: Sources, driver: str, count: int) -> list[int]:
+def compiled(folder: Path, sources: Sources, driver: str) -> ctypes.CDLL:
     for name, text in {**sources.files(), "driver.c": driver}.items():
         (folder / name).write_text(text, encoding="utf-8")
     file = folder / "layout.so"
     flags = [flag for flag in FLAGS[-1] if flag != "-O2"]
     build(next(compilers()), flags, [folder / "driver.c"], file)
-    return list((LONG * count).in_dll(ctypes.CDLL(str(file)), "layout"))
+    return ctypes.CDLL(str(file))
 
 
 def sources_of(module) -> Sources:
@@ -40,14 +40,17 @@ def sources_of(module) -> Sources:
     return Sources(module.NAME, header, source, step, stages=1)
 
 
-@pytest.mark.parametrize("name", [*STEPS, "direction"])
-def test_a_record_has_the_layout_of_c(name, tmp_path):
-    module, structure = module_of("piezo_stack"), c_record(name)
-    fields = [field for field, _ in structure._fields_]
-    steps = steps_source(module.NAME, 1, "one" if name in STEPS else "slopes")
-    driver = steps + layout_in_c(f"MODEL({name})", fields)
-    found = compiled_layout(tmp_path, sources_of(module), driver, len(fields) + 1)
-    assert found == layout_in_python(structure)
+@pytest.mark.parametrize(("layout", "names"), [("one", STEPS), ("slopes", ("direction",))])
+def test_a_record_has_the_layout_of_c(layout, names, tmp_path):
+    module, structures = module_of("piezo_stack"), [c_record(name) for name in names]
+    driver = steps_source(module.NAME, 1, layout)
+    for name, structure in zip(names, structures, strict=True):
+        fields = [field for field, _ in structure._fields_]
+        driver += layout_in_c(f"MODEL({name})", fields, f"layout_{name}")
+    library = compiled(tmp_path, sources_of(module), driver)
+    for name, structure in zip(names, structures, strict=True):
+        wanted = layout_in_python(structure)
+        assert list((LONG * len(wanted)).in_dll(library, f"layout_{name}")) == wanted, name
 
 
 def test_parameters_have_the_layout_of_the_header(tmp_path):
@@ -55,5 +58,6 @@ def test_parameters_have_the_layout_of_the_header(tmp_path):
     structure = type(ParameterRecords(module)(module.Parameters()).value)
     fields = [r.name for r in module.PARAMETERS] + [f"{bank}_count" for bank in module.BANKS]
     text = f'#include "{module.NAME}.h"' + layout_in_c(f"{module.NAME}_parameters", fields)
-    found = compiled_layout(tmp_path, sources_of(module), text, len(fields) + 1)
-    assert found == layout_in_python(structure)
+    library = compiled(tmp_path, sources_of(module), text)
+    wanted = layout_in_python(structure)
+    assert list((LONG * len(wanted)).in_dll(library, "layout")) == wanted
