@@ -163,8 +163,9 @@ def well(energy):
     )
 
 
-@pytest.mark.some(1)
-@pytest.mark.parametrize("energy", ["k*q**4/4", "k*log(1 + q**2)"])
+@pytest.mark.parametrize(
+    "energy", ["k*q**4/4", pytest.param("k*log(1 + q**2)", marks=pytest.mark.long)]
+)
 def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
     """Newton's method may end at what is no root, and quadrature miss a well within a step."""
     module = well(energy).module(tmp_path)

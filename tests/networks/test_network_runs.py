@@ -97,7 +97,7 @@ def reference(request):
     return model, module, simulate(module, rtol=1e-12, **SHORT)
 
 
-@pytest.mark.some(20)
+@pytest.mark.some(10)
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"rtol": 1e-9}, {"step": 1e-6}], ids=str)
 def test_specs(reference, accuracy):
     model, module, wanted = reference
