@@ -68,19 +68,64 @@ static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c,
     }
 }
 
-/* Lane j of a path functional, in one lane of numbers. */
-static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, long j, long lanes, int lane,
-                              const real *z, const real *parameter, real *given, real *rates)
+/* Compute stops of one coordinate, lanes `which` of a bank, in one lane of numbers. */
+static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, MODEL(stops) *s, const long *which,
+                              long lanes, int lane, const real *z, const real *parameter, real *given,
+                              real *rates)
 {
-    MODEL(means) mean;
-    const double k = LANE(parameter, STIFFNESS * lanes + j, lane);
-    const double share =
-        MODEL(stop)(w, LANE(z, j, lane), k, LANE(parameter, LIMIT * lanes + j, lane), mean);
+    for (long k = 0; k < s->count; ++k) {
+        s->z[k] = LANE(z, which[k], lane);
+        s->k[k] = LANE(parameter, STIFFNESS * lanes + which[k], lane);
+        s->r[k] = LANE(parameter, LIMIT * lanes + which[k], lane);
+    }
+    MODEL(stop)(w, s);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < s->count; ++k) {
+            const long j = which[k];
+            for (long what = 0; what < SHARE; ++what)
+                LANE(given + i * m->given, what * lanes + j, lane) = s->mean[what][i][k];
+            LANE(given + i * m->given, SHARE * lanes + j, lane) = s->share[k];
+            LANE(rates, i * m->n + j, lane) = w->rate[i] - s->mean[SLIP][i][k];
+        }
+}
+
+/* The same for those of a bank's lanes that are not in closed form: their share is negative. */
+static void MODEL(along_others)(const MODEL(block) *m, MODEL(way) *w, long lanes, int lane,
+                                const real *z, const real *parameter, real *given, real *rates)
+{
+    MODEL(stops) some;
+    long which[SOME];
+    some.count = 0;
+    for (long j = 0; j < lanes; ++j) {
+        which[some.count] = j;
+        some.count += LANE(given, SHARE * lanes + j, lane) < 0.0;
+        if (some.count == SOME || (j + 1 == lanes && some.count)) {
+            MODEL(along_path)(m, w, &some, which, lanes, lane, z, parameter, given, rates);
+            some.count = 0;
+        }
+    }
+}
+
+/* Each lane of a bank by itself, from drive number `drive` on: each has a way of its own if `own`. */
+static void MODEL(along_each)(const MODEL(block) *m, MODEL(way) *w, long drive, int own, long lanes,
+                              int lane, const real *z, const real *parameter, real *given, real *rates)
+{
+    MODEL(stops) one;
+    one.count = 1;
+    for (long j = 0; j < lanes; ++j) {
+        if (j && own)
+            MODEL(find_way)(m, w->h, drive + j, lane, w);
+        MODEL(along_path)(m, w, &one, &j, lanes, lane, z, parameter, given, rates);
+    }
+}
+
+/* The drives at the stages. */
+static void MODEL(find_drives)(const MODEL(block) *m, real h)
+{
     for (long i = 0; i < STAGES; ++i) {
-        for (long what = 0; what < SHARE; ++what)
-            LANE(given + i * m->given, what * lanes + j, lane) = mean[what][i];
-        LANE(given + i * m->given, SHARE * lanes + j, lane) = share;
-        LANE(rates, i * m->n + j, lane) = w->rate[i] - mean[SLIP][i];
+        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
+        MODEL(drives)(m->reached, m->mean + i * m->given, m->branch + i * m->branches,
+                      m->u + i * m->inputs, &m->p, m->drive + i * m->drives);
     }
 }
 
@@ -95,11 +140,7 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
     long drive = 0;
     m->yield[EARLIEST] = wide(1.0);
     m->yield[HOW_OFTEN] = zero;
-    for (long i = 0; i < STAGES; ++i) {
-        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
-        MODEL(drives)(m->reached, m->mean + i * m->given, m->branch + i * m->branches,
-                      m->u + i * m->inputs, &m->p, m->drive + i * m->drives);
-    }
+    MODEL(find_drives)(m, h);
     for (long n = 0; n < PATHS; ++n) {
         const int *path = MODEL(path)[n];
         const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]], first = m->first[path[INNER]];
@@ -116,17 +157,14 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
             const MODEL(course) c = MODEL(course_of)(w, h);
             MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
         }
-        for (long j = 0; j < lanes; ++j)
-            for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-                if (together && LANE(given, SHARE * lanes + j, lane) >= 0.0)
-                    continue;
-                if (j && path[OWN])
-                    MODEL(find_way)(m, OF(h, lane), drive + j, lane, w + lane);
-                MODEL(along_path)(m, w + lane, j, lanes, lane, z, parameter, given, rates);
-            }
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            LANE(m->yield, EARLIEST, lane) = w[lane].yields;
-            LANE(m->yield, HOW_OFTEN, lane) = w[lane].times;
+            MODEL(way) *const way = w + lane;
+            if (together)
+                MODEL(along_others)(m, way, lanes, lane, z, parameter, given, rates);
+            else
+                MODEL(along_each)(m, way, drive, path[OWN], lanes, lane, z, parameter, given, rates);
+            LANE(m->yield, EARLIEST, lane) = way->yields;
+            LANE(m->yield, HOW_OFTEN, lane) = way->times;
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
         drive += path[OWN] ? lanes : 1;

@@ -1,200 +1,207 @@
 /*
  * A path functional: what an element with an inner state z does while its coordinate C, whose rates
- * at the stages are its drive, follows a polynomial. Comes after gauss.c, for models that have
- * PATHS.
+ * at the stages are its drive, follows a polynomial. Comes after way.c.
  *
  * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of the slip's rate
  * dC/dt - dz/dt and of the heat. So h sum_i b_i F_i C'_i is the work int F dC, and z ends where its
  * path ends, wherever it begins or ceases to yield.
+ *
+ * Stops on one coordinate have one polynomial: they are computed side by side, without branches.
  */
 
 /* Parts of a step: what happens before this is at its begin. */
 #define BEGUN 1e-6
 /* An inner state so near to its limit, relative to it, was put there by the step before. */
 #define PUT_THERE 1e-14
+/* How near to a limit, in parts of the step, a place is found: work done there goes with its square. */
+#define FOUND 1e-8
+
+/* Stops on one coordinate, side by side: so many at a time. */
+enum { SOME = 32 };
 
 /*
- * The path of a coordinate in a step: the coefficients of C(tau) - C(0) and of dC/dtau; its change
- * up to each stage and its rate there; a bound on |C(tau) - C(0)|. C is monotonic between turn[k]
- * and turn[k + 1]. `yields` is the first part of the step where z begins, or ceases, to yield, as it
- * does `times` times.
+ * What they have: inner state, stiffness, limit. What they give: for the stages the means of effort,
+ * rate of the slip and heat, and the share of the step in which z follows C. On the way: where z is
+ * and whether it yields, the heat, and where in a piece of the step it comes to its limit.
  */
 typedef struct {
-    double gone[STAGES + 1], speed[STAGES], at_stage[STAGES], rate[STAGES], turn[STAGES + 1];
-    double h, most, yields, times;
-    long pieces;
-} MODEL(way);
+    long count;
+    double z[SOME], k[SOME], r[SOME];
+    double mean[SHARE][STAGES][SOME], share[SOME];
+    double now[SOME], yields[SOME], heat[SOME], room[SOME], meets[SOME], until[SOME];
+    double lead[STAGES][SOME], moved[STAGES][SOME];
+} MODEL(stops);
 
-/* Means for the stages: effort, rate of the slip and heat. */
-typedef double MODEL(means)[SHARE][STAGES];
+/* A piece of a step, in which C is monotonic: its ends, C there, and the side to which it goes. */
+typedef struct {
+    double low, high, from, more, side;
+} MODEL(piece);
 
-static double MODEL(polynomial)(const double *a, long degree, double at)
+/*
+ * The piece's part up to which z follows C: to the end, or to where C reaches what is left to the
+ * limit. By Newton's method and bisection, in all lanes as long as one of them moves.
+ */
+static void MODEL(find_limits)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
-    double sum = a[degree];
-    for (long n = degree; n-- > 0;)
-        sum = a[n] + at * sum;
-    return sum;
+    double low[SOME], high[SOME], moving = 0.0;
+    for (long j = 0; j < s->count; ++j) {
+        const double left = piece->side * s->r[j] - s->now[j];
+        const double room = fabs(left) <= PUT_THERE * s->r[j] ? 0.0 : left;
+        const double meets = fabs(piece->more) > fabs(room) ? 1.0 : 0.0;
+        const double part = meets > 0.0 ? room / piece->more : 1.0;
+        s->room[j] = room, s->meets[j] = meets;
+        low[j] = piece->low, high[j] = piece->high;
+        s->until[j] = piece->low + part * (piece->high - piece->low);
+        moving += part > 0.0 && part < 1.0 ? 1.0 : 0.0;
+    }
+    for (int again = 0; STAGES > 1 && again < 100 && moving > 0.0; ++again) {
+        moving = 0.0;
+#pragma omp simd reduction(+ : moving)
+        for (long j = 0; j < s->count; ++j) {
+            const double at = s->until[j];
+            double sum = w->gone[STAGES], slope = 0.0;
+            for (long n = STAGES; n-- > 0;) {
+                slope = sum + at * slope;
+                sum = w->gone[n] + at * sum;
+            }
+            const double over = piece->side * (sum - piece->from - s->room[j]);
+            const double below = over < 0.0 ? at : low[j], above = over < 0.0 ? high[j] : at;
+            const double next = at - piece->side * over / slope, half = 0.5 * (below + above);
+            const double inside = next > below && next < above ? next : half;
+            const double search = s->meets[j] > 0.0 && s->room[j] != 0.0 ? 1.0 : 0.0;
+            low[j] = below, high[j] = above;
+            s->until[j] = search > 0.0 ? inside : at;
+            moving += search > 0.0 && fabs(inside - at) > FOUND ? 1.0 : 0.0;
+        }
+    }
 }
 
 /*
- * Where a polynomial that is monotonic between two points has a value: Newton's method and
- * bisection.
+ * Add the means of the effort in a piece's part in which z follows C: F = k (now + C - C(low)).
+ * Integrals of the stages' weights over that part, and of these times the rate of C, are in `lead`
+ * and `moved`. Exact: all integrands are of degree < 2s.
  */
-static double MODEL(meets)(const double *a, long degree, double value, double low, double high)
+static void MODEL(add_following)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
-    const int rises = MODEL(polynomial)(a, degree, low) < MODEL(polynomial)(a, degree, high);
-    double at = 0.5 * (low + high);
-    for (int again = 0; again < 100; ++again) {
-        double sum = a[degree], slope = 0.0;
-        for (long n = degree; n-- > 0;) {
-            slope = sum + at * slope;
-            sum = a[n] + at * sum;
-        }
-        const double before = at;
-        if ((sum < value) == rises)
-            low = at;
-        else
-            high = at;
-        at -= (sum - value) / slope;
-        if (!(at > low && at < high))
-            at = 0.5 * (low + high);
-        if (fabs(at - before) <= 4e-16)
-            break;
-    }
-    return at;
-}
-
-/* Find where a coordinate turns: zeros of its speed lie between those of the speed's derivative. */
-static void MODEL(find_turns)(MODEL(way) *w)
-{
-    w->turn[0] = 0.0, w->turn[1] = 1.0, w->pieces = 1;
-    for (long order = STAGES - 2; order >= 0; --order) {
-        double a[STAGES], found[STAGES + 1] = {0.0};
-        const long degree = STAGES - 1 - order;
-        long pieces = 0;
-        for (long n = 0; n <= degree; ++n) {
-            a[n] = w->speed[n + order];
-            for (long k = 1; k <= order; ++k)
-                a[n] *= (double)(n + k);
-        }
-        for (long k = 0; k < w->pieces; ++k) {
-            const double low = w->turn[k], high = w->turn[k + 1];
-            const double at_low = MODEL(polynomial)(a, degree, low);
-            if ((at_low < 0.0) != (MODEL(polynomial)(a, degree, high) < 0.0))
-                found[++pieces] = MODEL(meets)(a, degree, 0.0, low, high);
-        }
-        found[++pieces] = 1.0;
-        memcpy(w->turn, found, sizeof found);
-        w->pieces = pieces;
-    }
-}
-
-/* The path of a coordinate that has drive number i, in one lane's step. */
-static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, MODEL(way) *w)
-{
-    double square = 0.0;
-    (void)lane; /* a number has no lanes */
-    w->h = h;
-    w->gone[0] = 0.0;
-    for (long j = 0; j < STAGES; ++j) {
-        w->rate[j] = LANE(m->drive, j * m->drives + i, lane);
-        square += stage_weight[j] * w->rate[j] * w->rate[j];
-    }
-    w->most = h * sqrt(square); /* the mean of |dC/dt| is at most its root mean square */
-    for (long n = 0; n < STAGES; ++n) {
-        double sum = 0.0, at_stage = 0.0;
-        for (long j = 0; j < STAGES; ++j) {
-            sum += along[j][n] * w->rate[j];
-            at_stage += stage_reach[n][j] * w->rate[j];
-        }
-        w->gone[n + 1] = h * sum;
-        w->speed[n] = (double)(n + 1) * h * sum;
-        w->at_stage[n] = h * at_stage;
-    }
-    w->pieces = 0; /* found when needed */
-}
-
-/*
- * Add the means over a piece of a step in which F = at_begin + k (C - C(0)): z follows C, or
- * yields.
- */
-static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, double at_begin, double k,
-                             int yields, MODEL(means) mean)
-{
-    for (long q = 0; q < STAGES; ++q) { /* exact: all integrands are of degree < 2s */
-        const double at = low + (high - low) * stage_at[q];
-        const double effort = at_begin + k * MODEL(polynomial)(w->gone, STAGES, at);
-        const double rate = MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h;
-        for (long i = 0; i < STAGES; ++i) {
-            double part = (high - low) * stage_weight[q] * (stage_lead[i] / stage_weight[i]);
-            for (long j = 0; j < STAGES; ++j)
-                part *= j == i ? 1.0 : at - stage_at[j];
-            mean[EFFORT][i] += part * effort;
-            if (yields) {
-                mean[SLIP][i] += part * rate;
-                mean[HEAT][i] += part * effort * rate;
+    memset(s->lead, 0, sizeof s->lead);
+    memset(s->moved, 0, sizeof s->moved);
+    for (long q = 0; q < STAGES; ++q)
+#pragma omp simd
+        for (long j = 0; j < s->count; ++j) {
+            const double length = s->until[j] - piece->low, at = piece->low + length * stage_at[q];
+            const double gone = MODEL(polynomial)(w->gone, STAGES, at) - piece->from;
+            const double effort = s->k[j] * (s->now[j] + gone);
+            const double rate = MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h;
+            for (long i = 0; i < STAGES; ++i) {
+                double part = length * stage_weight[q] * (stage_lead[i] / stage_weight[i]);
+                for (long n = 0; n < STAGES; ++n)
+                    part *= n == i ? 1.0 : at - stage_at[n];
+                s->lead[i][j] += part;
+                s->moved[i][j] += part * rate;
+                s->mean[EFFORT][i][j] += part * effort;
             }
         }
+}
+
+/* Add the means of the piece's rest, in which z stays at its limit: all but the part before. */
+static void MODEL(add_yielding)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+{
+    const double length = piece->high - piece->low;
+    for (long i = 0; i < STAGES; ++i) {
+        double lead = 0.0, moved = 0.0;
+        for (long q = 0; q < STAGES; ++q) {
+            const double at = piece->low + length * stage_at[q];
+            double part = length * stage_weight[q] * (stage_lead[i] / stage_weight[i]);
+            for (long n = 0; n < STAGES; ++n)
+                part *= n == i ? 1.0 : at - stage_at[n];
+            lead += part;
+            moved += part * (MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h);
+        }
+#pragma omp simd
+        for (long j = 0; j < s->count; ++j) {
+            const double effort = s->k[j] * (piece->side * s->r[j]);
+            const double slip = s->meets[j] > 0.0 ? moved - s->moved[i][j] : 0.0;
+            s->mean[EFFORT][i][j] += s->meets[j] > 0.0 ? effort * (lead - s->lead[i][j]) : 0.0;
+            s->mean[SLIP][i][j] += slip;
+            s->mean[HEAT][i][j] += effort * slip;
+        }
+    }
+}
+
+/* Take stops to the end of a piece, and note where they begin, or cease, to yield. */
+static void MODEL(pass)(MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+{
+    double first = w->yields, times = 0.0;
+#pragma omp simd reduction(+ : times) reduction(min : first)
+    for (long j = 0; j < s->count; ++j) {
+        const double until = s->until[j], limit = piece->side * s->r[j];
+        const double begins = s->meets[j] > 0.0 ? until : 1.0;
+        const double place = s->yields[j] > 0.0 && until > piece->low ? piece->low : begins;
+        const double inside = place > BEGUN && place < 1.0 ? place : 1.0;
+        const double beyond = s->k[j] * s->r[j] * (fabs(piece->more) - fabs(s->room[j]));
+        times += inside < 1.0 ? 1.0 : 0.0;
+        first = inside < first ? inside : first;
+        s->heat[j] += s->meets[j] > 0.0 ? beyond : 0.0;
+        s->now[j] = s->meets[j] > 0.0 ? limit : s->now[j] + piece->more;
+        s->share[j] += until - piece->low;
+        s->yields[j] = s->meets[j];
+    }
+    w->yields = first;
+    w->times += times;
+}
+
+/*
+ * Let the means add up to all of the slip and all of the heat. A stage's mean of the heat may be
+ * negative: it becomes 0, the others are scaled to the total.
+ */
+static void MODEL(settle)(const MODEL(way) *w, MODEL(stops) *s)
+{
+    const double gone = MODEL(polynomial)(w->gone, STAGES, 1.0);
+#pragma omp simd
+    for (long j = 0; j < s->count; ++j) {
+        double yielded = 0.0, slipped = 0.0;
+        for (long i = 0; i < STAGES; ++i) {
+            const double heat = s->mean[HEAT][i][j] > 0.0 ? s->mean[HEAT][i][j] : 0.0;
+            s->mean[HEAT][i][j] = heat;
+            yielded += stage_weight[i] * heat;
+            slipped += stage_weight[i] * s->mean[SLIP][i][j];
+        }
+        const double rest = (gone - (s->now[j] - s->z[j])) / w->h - slipped;
+        const double heat = s->heat[j] / w->h, part = yielded > 0.0 ? heat / yielded : 0.0;
+        for (long i = 0; i < STAGES; ++i) {
+            s->mean[HEAT][i][j] = yielded > 0.0 ? part * s->mean[HEAT][i][j] : heat;
+            s->mean[SLIP][i][j] += rest;
+#if LOSSY
+            s->mean[EFFORT][i][j] = s->k[j] * s->now[j]; /* as all co-states of a dissipative step, at its end */
+#endif
+        }
     }
 }
 
 /*
- * A stop element: F = k z; z follows C, but stays at -r or r while C goes further. Returns the part
- * of the step in which z follows C.
+ * Stop elements: F = k z; z follows C, but stays at -r or r while C goes further.
  */
-static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(means) mean)
+static void MODEL(stop)(MODEL(way) *w, MODEL(stops) *s)
 {
-    const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
-    double now = begin, heat = 0.5 * k * (z - begin) * (z + begin), moving = 0.0;
-    double yielded = 0.0, slipped = 0.0;
-    int yielding = 0;
-    memset(mean, 0, sizeof(MODEL(means)));
-    if (fabs(z) + w->most <= r) {
-        for (long i = 0; i < STAGES; ++i)
-            mean[EFFORT][i] = k * (z + w->at_stage[i]);
-        return 1.0;
+    memset(s->mean, 0, sizeof s->mean);
+    for (long j = 0; j < s->count; ++j) {
+        const double z = s->z[j], r = s->r[j];
+        const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
+        s->now[j] = begin;
+        s->heat[j] = 0.5 * s->k[j] * (z - begin) * (z + begin);
+        s->share[j] = s->yields[j] = 0.0;
     }
     if (!w->pieces)
         MODEL(find_turns)(w);
     for (long n = 0; n < w->pieces; ++n) {
-        const double low = w->turn[n], high = w->turn[n + 1];
-        const double from = MODEL(polynomial)(w->gone, STAGES, low);
-        const double more = MODEL(polynomial)(w->gone, STAGES, high) - from;
-        const double limit = more > 0.0 ? r : -r, left = limit - now;
-        const double room = fabs(left) <= PUT_THERE * r ? 0.0 : left;
-        const int yields = fabs(more) > fabs(room);
-        const double until = !yields ? high
-            : room == 0.0            ? low
-                                     : MODEL(meets)(w->gone, STAGES, from + room, low, high);
-        MODEL(add_piece)(w, low, until, k * (now - from), k, 0, mean);
-        const double place = yielding && until > low ? low : yields ? until : 1.0;
-        if (place > BEGUN && place < 1.0) {
-            w->yields = place < w->yields ? place : w->yields;
-            ++w->times;
-        }
-        yielding = yields;
-        moving += until - low;
-        now = yields ? limit : now + more;
-        if (yields) {
-            MODEL(add_piece)(w, until, high, k * limit, 0.0, 1, mean);
-            heat += k * r * (fabs(more) - fabs(room));
-        }
+        MODEL(piece) piece = {.low = w->turn[n], .high = w->turn[n + 1]};
+        piece.from = MODEL(polynomial)(w->gone, STAGES, piece.low);
+        piece.more = MODEL(polynomial)(w->gone, STAGES, piece.high) - piece.from;
+        piece.side = piece.more > 0.0 ? 1.0 : -1.0;
+        MODEL(find_limits)(w, &piece, s);
+        MODEL(add_following)(w, &piece, s);
+        MODEL(add_yielding)(w, &piece, s);
+        MODEL(pass)(w, &piece, s);
     }
-    /*
-     * a stage's mean of the heat may be negative: it becomes 0, the others are scaled to the total
-     */
-    for (long i = 0; i < STAGES; ++i) {
-        mean[HEAT][i] = fmax(mean[HEAT][i], 0.0);
-        yielded += stage_weight[i] * mean[HEAT][i];
-        slipped += stage_weight[i] * mean[SLIP][i];
-    }
-    const double rest = (MODEL(polynomial)(w->gone, STAGES, 1.0) - (now - z)) / w->h - slipped;
-    for (long i = 0; i < STAGES; ++i) {
-        mean[HEAT][i] = heat / w->h * (yielded > 0.0 ? mean[HEAT][i] / yielded : 1.0);
-        mean[SLIP][i] += rest;
-#if LOSSY
-        mean[EFFORT][i] = k * now; /* as all co-states of a dissipative step, at its end */
-#endif
-    }
-    return moving;
+    MODEL(settle)(w, s);
 }
