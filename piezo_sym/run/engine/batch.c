@@ -136,6 +136,9 @@ static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
     MODEL(block) *m = &b->m;
     mask going = where;
     memcpy(m->reached, m->x, (size_t)m->n * sizeof(real));
+#if defined(PATHS)
+    m->surveyed = h;
+#endif
     for (int iteration = 0; iteration < ROUGH_ITERATIONS && any(going); ++iteration) {
         real worst = zero;
         m->iterations += chosen(going, wide(1.0), zero);
@@ -158,6 +161,9 @@ static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
         where &= none_of(lost & going);
         going &= far;
     }
+#if defined(PATHS)
+    m->surveyed = zero;
+#endif
     return where & MODEL(within)(b->some_margin) & none_of(going);
 }
 

@@ -74,6 +74,7 @@ typedef struct {
     long drives;
     real *path, *drive; /* parameters of path functionals; drives at stages and at a point */
     real *yield;
+    real surveyed; /* the length of a survey's step; else 0 */
 #endif /* PATHS */
 #if defined(BENDS)
     long bends;

@@ -189,6 +189,26 @@ static void MODEL(of_stages)(const MODEL(block) *m, const double *weight, long l
     given[HEAT * lanes] = heat;
 }
 
+/*
+ * A stop where it stands: at its limit it yields if its coordinate goes on outward. In the middle of a
+ * survey's step, which begins at `begin`: halfway to where the present rate leads it.
+ */
+static inline void MODEL(stand)(const MODEL(block) *m, real inner, real begin, real rate, real k, real r,
+                                long lanes, real *given)
+{
+    const mask on = m->surveyed > 0.0;
+    const real went = chosen(on, begin + m->surveyed * rate, inner);
+    const real end = least(largest_of(went, -r), r), z = chosen(on, 0.5 * (begin + end), end);
+    const mask at_limit = (size_of(z) >= r * (1.0 - AT_LIMIT)) & ((z * rate > 0.0) | (r <= 0.0));
+    const mask beyond = size_of(went) > r;
+    const mask yields = (on & beyond) | (none_of(on) & at_limit);
+    const real slip = chosen(on, rate - (end - begin) / m->surveyed, rate);
+    given[EFFORT * lanes] = k * z;
+    given[SLIP * lanes] = chosen(yields, slip, zero);
+    given[HEAT * lanes] = chosen(yields, k * z * slip, zero);
+    given[SHARE * lanes] = chosen(yields, zero, wide(1.0));
+}
+
 /* What path functionals give at a point: it follows from the drives there, or `of_stages` (`weight`). */
 static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
                             const double *weight)
@@ -202,15 +222,10 @@ static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *br
         const int *path = MODEL(path)[n];
         const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
         for (long j = 0; j < lanes; ++j) {
+            const long row = m->first[path[INNER]] + j;
             const real k = parameter[STIFFNESS * lanes + j], r = parameter[LIMIT * lanes + j];
-            const real inner = x[m->first[path[INNER]] + j], z = least(largest_of(inner, -r), r);
             const real *const drives = m->drive + drive + path[OWN] * j;
-            const real rate = drives[STAGES * m->drives];
-            const mask yields = (size_of(z) >= r * (1.0 - AT_LIMIT)) & ((z * rate > 0.0) | (r <= 0.0));
-            given[EFFORT * lanes + j] = k * z;
-            given[SLIP * lanes + j] = chosen(yields, rate, zero);
-            given[HEAT * lanes + j] = chosen(yields, k * z * rate, zero);
-            given[SHARE * lanes + j] = chosen(yields, zero, wide(1.0));
+            MODEL(stand)(m, x[row], m->x[row], drives[STAGES * m->drives], k, r, lanes, given + j);
             if (weight)
                 MODEL(of_stages)(m, weight, lanes, drives, given + j);
         }
