@@ -36,7 +36,7 @@ WRITTEN_OUT = (
 PLAIN = "-DPLAIN"
 #: Flags, best first; the next are tried where a compiler refuses some.
 FLAGS: tuple[tuple[str, ...], ...] = (
-    ("-O3", "-march=native", "-fopenmp-simd", "-fno-math-errno", DIRECT, *WRITTEN_OUT, *COMMON),
+    ("-O3", "-march=native", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", DIRECT, *WRITTEN_OUT, *COMMON),
     ("-O3", "-march=native", "-fopenmp-simd", "-fno-math-errno", DIRECT, *COMMON),
     ("-O3", "-fopenmp-simd", "-fno-math-errno", *COMMON),
     ("-O2", PLAIN, *COMMON),

@@ -73,6 +73,18 @@ static void MODEL(sampled)(MODEL(batch) *b, MODEL(dispatch) *t)
     }
 }
 
+#if defined(PATHS)
+/* The rates where steps with a tolerance began, as their stages tell. */
+static void MODEL(as_begun)(MODEL(batch) *b, const MODEL(dispatch) *t)
+{
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        if (IN(t->steps, lane))
+            MODEL(inputs_at)(b->lane[lane].segment, b->m.inputs, b->lane[lane].t, b->some_inputs, lane);
+    MODEL(point)(b, b->m.x, b->m.branch, stage_start, b->some_rate, b->some_side);
+    MODEL(copy)(t->steps & t->found, b->some_rate, b->rate, b->m.n);
+}
+#endif
+
 /* Rates and switching functions where steps end, and the rates of steps that were found. */
 static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
@@ -81,11 +93,8 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
     MODEL(copy)(t->steps, b->some_rows, b->part, m->booked);
     MODEL(copy)(t->steps & t->found, m->rates, b->known, STAGES * m->n);
 #if defined(PATHS) /* where it began, as its stages tell */
-    for (int lane = 0; lane < REAL_WIDTH; ++lane)
-        if (IN(t->steps, lane))
-            MODEL(inputs_at)(b->lane[lane].segment, m->inputs, b->lane[lane].t, b->some_inputs, lane);
-    MODEL(point)(b, m->x, m->branch, stage_start, b->some_rate, b->some_side);
-    MODEL(copy)(t->steps & t->found, b->some_rate, b->rate, m->n);
+    if (b->fixed == 0.0)
+        MODEL(as_begun)(b, t);
 #endif
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         const MODEL(lane) *l = b->lane + lane;

@@ -4,6 +4,19 @@
  * a complex number of reals, and NAMED(name) tells the two apart.
  */
 
+/* The sum of products over lanes, in parts that do not wait for one another. */
+static inline NUMBER NAMED(total)(const NUMBER *restrict a, const real *restrict b, long lanes)
+{
+    NUMBER sum[4] = {NONE, NONE, NONE, NONE};
+    long j = 0;
+    for (; j + 4 <= lanes; j += 4)
+        for (long part = 0; part < 4; ++part)
+            sum[part] = MORE(sum[part], BY(a[j + part], b[j + part]));
+    for (; j < lanes; ++j)
+        sum[0] = MORE(sum[0], BY(a[j], b[j]));
+    return MORE(MORE(sum[0], sum[1]), MORE(sum[2], sum[3]));
+}
+
 /* How many numbers a factorisation has. */
 static long NAMED(factor_size)(const MODEL(block) *m)
 {
@@ -86,9 +99,8 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
                 NUMBER *const meet = slot + MODEL(meet)[MODEL(first)[k] + r * columns + c];
                 NUMBER sum = NONE;
                 for (long b = 0; b < states; ++b)
-                    for (long j = 0; j < lanes; ++j)
-                        sum = MORE(sum, BY(reaction[(b * columns + c) * lanes + j],
-                                           into[(r * states + b) * lanes + j]));
+                    sum = MORE(sum, NAMED(total)(reaction + (b * columns + c) * lanes,
+                                                 into + (r * states + b) * lanes, lanes));
                 *meet = LESS(*meet, TIMES(gamma, sum));
             }
         lane = into + rows * states * lanes;
@@ -137,8 +149,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
         for (long i = 0; i < rows; ++i) {
             NUMBER sum = NONE;
             for (long b = 0; b < states; ++b)
-                for (long j = 0; j < lanes; ++j)
-                    sum = MORE(sum, BY(r[m->first[state[b]] + j], into[(i * states + b) * lanes + j]));
+                sum = MORE(sum, NAMED(total)(r + m->first[state[b]], into + (i * states + b) * lanes,
+                                             lanes));
             y[row[i]] = MORE(y[row[i]], TIMES(gamma, sum));
         }
         lane = into + rows * states * lanes;

@@ -120,10 +120,10 @@ static mask MODEL(accepted)(const MODEL(block) *m)
         const real *rows = m->rows + i * m->booked + ports + processes;
         real total = zero, lowest = zero;
         good &= MODEL(within)(m->margin + i * MODEL(limits));
+#pragma omp simd reduction(+ : total) reduction(min : lowest)
         for (long k = 0; k < processes; ++k) {
-            const mask less = rows[k] < lowest;
             total += size_of(rows[k]);
-            lowest = chosen(less, rows[k], lowest);
+            lowest = chosen(rows[k] < lowest, rows[k], lowest);
         }
 #if LOSSY
         lowest = fmin(lowest, m->rows[m->booked - 1]);
@@ -142,6 +142,7 @@ static mask MODEL(accepted)(const MODEL(block) *m)
 static real MODEL(damping)(const MODEL(block) *m)
 {
     real both = zero, prior = NO_SIZE + zero;
+#pragma omp simd reduction(+ : both, prior)
     for (long k = 0; k < m->n; ++k) {
         const real size = m->largest[k] + size_of(m->x[k]) + NO_SIZE;
         for (long j = 0; j < STAGES; ++j) {
@@ -161,16 +162,18 @@ static real MODEL(damping)(const MODEL(block) *m)
  */
 static mask MODEL(solves)(const MODEL(block) *m, real h)
 {
-    mask good = none_of(nowhere);
+    real unsolved = zero; /* how many states are */
+#pragma omp simd reduction(+ : unsolved)
     for (long k = 0; k < m->n; ++k) {
         real moved = zero, left = zero;
         for (long j = 0; j < STAGES; ++j) {
             moved = largest_of(moved, size_of(m->rates[j * m->n + k]));
             left = largest_of(left, size_of(m->gap[j * m->n + k]));
         }
-        good &= h * left <= LEFT * (m->largest[k] + size_of(m->x[k]) + h * moved);
+        const real most = LEFT * (m->largest[k] + size_of(m->x[k]) + h * moved);
+        unsolved += chosen(h * left <= most, zero, wide(1.0));
     }
-    return good;
+    return unsolved == 0.0;
 }
 
 /* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
@@ -193,21 +196,27 @@ static mask MODEL(strayed)(const MODEL(block) *m)
 /* Add part of the change to the rates; returns the largest change of a state, in units of noise. */
 static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
 {
-    real worst = zero;
-    for (long k = 0; k < m->n; ++k) {
+    const long n = m->n;
+    const real *restrict const gap = m->gap;
+    real *restrict const rates = m->rates, *restrict const prior = m->prior;
+    real worst = zero, lost = zero; /* nan, where a change is none */
+#pragma omp simd reduction(max : worst) reduction(+ : lost)
+    for (long k = 0; k < n; ++k) {
         real moved = zero, sum = zero;
         for (long j = 0; j < STAGES; ++j) {
-            real *const rate = m->rates + j * m->n + k;
-            const real change = chosen(where, part * m->gap[j * m->n + k], zero);
-            m->prior[j * m->n + k] = change;
-            *rate += change;
-            moved = largest_of(moved, size_of(*rate));
+            const real all = part * gap[j * n + k], change = chosen(where, all, zero);
+            const real rate = rates[j * n + k] + change;
+            prior[j * n + k] = change;
+            rates[j * n + k] = rate;
+            moved = largest_of(moved, size_of(rate));
             sum += size_of(change);
         }
         const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + NO_SIZE;
-        worst = largest_of(h * sum / size, worst);
+        const real noises = h * sum / size;
+        worst = chosen(noises > worst, noises, worst);
+        lost += 0.0 * noises;
     }
-    return worst;
+    return worst + lost;
 }
 
 /*

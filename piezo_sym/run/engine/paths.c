@@ -45,25 +45,30 @@ static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c,
                                   const real *restrict z, const real *restrict parameter,
                                   real *restrict given, real *restrict rates)
 {
-    const real *const k = parameter + STIFFNESS * lanes, *const r = parameter + LIMIT * lanes;
-    const real side = chosen(c->rises, wide(1.0), wide(-1.0));
-    real *const share = given + SHARE * lanes;
-    for (long j = 0; j < lanes; ++j) {
-        const mask follows = (z[j] + c->largest <= r[j]) & (z[j] + c->least >= -r[j]);
-        const mask yields = (size_of(z[j] - side * r[j]) <= PUT_THERE * r[j]) & none_of(c->turns);
-        share[j] = chosen(follows, wide(1.0), chosen(yields, zero, wide(-1.0)));
-    }
+    const real *restrict const k = parameter + STIFFNESS * lanes;
+    const real *restrict const r = parameter + LIMIT * lanes;
+    const real side = chosen(c->rises, wide(1.0), wide(-1.0)), none = wide(-1.0);
+    const real largest = c->largest, least = c->least, far = chosen(c->turns, none, wide(PUT_THERE));
     for (long i = 0; i < STAGES; ++i) {
-        real *const row = given + i * m->given, *const rate = rates + i * m->n;
+        real *restrict const effort = given + i * m->given + EFFORT * lanes;
+        real *restrict const slip = given + i * m->given + SLIP * lanes;
+        real *restrict const heat = given + i * m->given + HEAT * lanes;
+        real *restrict const share = given + i * m->given + SHARE * lanes;
+        real *restrict const rate = rates + i * m->n;
+        const real drive = c->rate[i], at_stage = c->at_stage[i], h = c->h;
+#pragma omp simd
         for (long j = 0; j < lanes; ++j) {
-            const mask yields = share[j] == 0.0;
-            const real limit = side * r[j], put = (limit - z[j]) / c->h;
-            const real effort = k[j] * chosen(yields, limit, z[j] + c->at_stage[i]);
-            row[EFFORT * lanes + j] = effort;
-            row[SLIP * lanes + j] = chosen(yields, c->rate[i] - put, zero);
-            row[HEAT * lanes + j] = chosen(yields, effort * c->rate[i], zero);
-            row[SHARE * lanes + j] = share[j];
-            rate[j] = chosen(yields, put, c->rate[i]);
+            const real limit = side * r[j], put = (limit - z[j]) / h;
+            const real outside = chosen(size_of(z[j] - limit) <= far * r[j], zero, none);
+            const real above = chosen(z[j] + largest <= r[j], wide(1.0), outside);
+            const real part = chosen(z[j] + least >= -r[j], above, outside);
+            const real there = z[j] + at_stage, yields = chosen(part == 0.0, wide(1.0), zero);
+            const real force = k[j] * chosen(part == 0.0, limit, there);
+            share[j] = part;
+            effort[j] = force;
+            slip[j] = yields * (drive - put);
+            heat[j] = yields * (force * drive);
+            rate[j] = chosen(part == 0.0, put, drive);
         }
     }
 }
@@ -93,13 +98,21 @@ static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, MODEL(stops)
 static void MODEL(along_others)(const MODEL(block) *m, MODEL(way) *w, long lanes, int lane,
                                 const real *z, const real *parameter, real *given, real *rates)
 {
+    const real *const share = given + SHARE * lanes;
     MODEL(stops) some;
     long which[SOME];
     some.count = 0;
-    for (long j = 0; j < lanes; ++j) {
-        which[some.count] = j;
-        some.count += LANE(given, SHARE * lanes + j, lane) < 0.0;
-        if (some.count == SOME || (j + 1 == lanes && some.count)) {
+    for (long j = 0; j < lanes; j += SEEN) {
+        const long end = j + SEEN < lanes ? j + SEEN : lanes;
+        double others = 0.0;
+#pragma omp simd reduction(+ : others)
+        for (long k = j; k < end; ++k)
+            others += LANE(share, k, lane) < 0.0 ? 1.0 : 0.0;
+        for (long k = j; others > 0.0 && k < end; ++k) {
+            which[some.count] = k;
+            some.count += LANE(share, k, lane) < 0.0;
+        }
+        if (some.count + SEEN > SOME || (end == lanes && some.count)) {
             MODEL(along_path)(m, w, &some, which, lanes, lane, z, parameter, given, rates);
             some.count = 0;
         }
@@ -176,60 +189,68 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
  * which it yields, slip follows the drive there: an inner state that does not move has no misfit.
  */
 static void MODEL(of_stages)(const MODEL(block) *m, const double *weight, long lanes, const real *drives,
-                             real *given)
+                             int own, real *restrict given)
 {
-    const real *mean = m->mean + (given - m->node);
-    const real yields = 1.0 - mean[SHARE * lanes];
-    real slip = yields * drives[STAGES * m->drives], heat = zero;
-    for (long i = 0; i < STAGES; ++i, mean += m->given) {
-        slip += weight[i] * (mean[SLIP * lanes] - yields * drives[i * m->drives]);
-        heat += weight[i] * mean[HEAT * lanes];
+    const real *const mean = m->mean + (given - m->node);
+#pragma omp simd
+    for (long j = 0; j < lanes; ++j) {
+        const real *const drive = drives + own * j;
+        const real yields = 1.0 - mean[SHARE * lanes + j];
+        real slip = yields * drive[STAGES * m->drives], heat = zero;
+        for (long i = 0; i < STAGES; ++i) {
+            const real *const stage = mean + i * m->given + j;
+            slip += weight[i] * (stage[SLIP * lanes] - yields * drive[i * m->drives]);
+            heat += weight[i] * stage[HEAT * lanes];
+        }
+        given[SLIP * lanes + j] = slip;
+        given[HEAT * lanes + j] = heat;
     }
-    given[SLIP * lanes] = slip;
-    given[HEAT * lanes] = heat;
 }
 
 /*
- * A stop where it stands: at its limit it yields if its coordinate goes on outward. In the middle of a
- * survey's step, which begins at `begin`: halfway to where the present rate leads it.
+ * Stops where they stand: at its limit one yields if its coordinate goes on outward. In the middle of a
+ * survey's step, which begins at m->x: halfway to where the present rate leads it.
  */
-static inline void MODEL(stand)(const MODEL(block) *m, real inner, real begin, real rate, real k, real r,
-                                long lanes, real *given)
+static void MODEL(stand)(const MODEL(block) *m, const real *restrict begin, const real *restrict parameter,
+                         const real *drives, int own, long lanes, real *restrict given)
 {
-    const mask on = m->surveyed > 0.0;
-    const real went = chosen(on, begin + m->surveyed * rate, inner);
-    const real end = least(largest_of(went, -r), r), z = chosen(on, 0.5 * (begin + end), end);
-    const mask at_limit = (size_of(z) >= r * (1.0 - AT_LIMIT)) & ((z * rate > 0.0) | (r <= 0.0));
-    const mask beyond = size_of(went) > r;
-    const mask yields = (on & beyond) | (none_of(on) & at_limit);
-    const real slip = chosen(on, rate - (end - begin) / m->surveyed, rate);
-    given[EFFORT * lanes] = k * z;
-    given[SLIP * lanes] = chosen(yields, slip, zero);
-    given[HEAT * lanes] = chosen(yields, k * z * slip, zero);
-    given[SHARE * lanes] = chosen(yields, zero, wide(1.0));
+    const real h = m->surveyed, per = chosen(h > 0.0, 1.0 / h, zero), part = chosen(h > 0.0, wide(0.5), zero);
+    real *restrict const slip = given + SLIP * lanes;
+    for (long j = 0; j < lanes; ++j)
+        slip[j] = drives[own * j];
+#pragma omp simd
+    for (long j = 0; j < lanes; ++j) {
+        const real k = parameter[STIFFNESS * lanes + j], r = parameter[LIMIT * lanes + j], rate = slip[j];
+        const real went = begin[j] + h * rate, below = chosen(went > r, r, went);
+        const real end = chosen(below < -r, -r, below);
+        const real z = part * begin[j] + (1.0 - part) * end;
+        const real ahead = end * rate, outward = chosen(r > 0.0, ahead, wide(1.0));
+        const real near = r * (1.0 - AT_LIMIT), out = chosen(size_of(end) >= near, outward, zero);
+        const real yields = chosen(out > 0.0, wide(1.0), zero);
+        const real slips = yields * (rate - (end - begin[j]) * per);
+        given[EFFORT * lanes + j] = k * z;
+        slip[j] = slips;
+        given[HEAT * lanes + j] = k * z * slips;
+        given[SHARE * lanes + j] = 1.0 - yields;
+    }
 }
 
 /* What path functionals give at a point: it follows from the drives there, or `of_stages` (`weight`). */
 static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
                             const double *weight)
 {
-    const real *parameter = m->path;
+    const real *parameter = m->path, *drives = m->drive;
     real *given = m->node + m->means;
-    long drive = 0;
     MODEL(path_parameters)(x, &m->p, m->path);
     MODEL(drives)(x, m->node, branch, u, &m->p, m->drive + STAGES * m->drives);
     for (long n = 0; n < PATHS; ++n) {
-        const int *path = MODEL(path)[n];
-        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
-        for (long j = 0; j < lanes; ++j) {
-            const long row = m->first[path[INNER]] + j;
-            const real k = parameter[STIFFNESS * lanes + j], r = parameter[LIMIT * lanes + j];
-            const real *const drives = m->drive + drive + path[OWN] * j;
-            MODEL(stand)(m, x[row], m->x[row], drives[STAGES * m->drives], k, r, lanes, given + j);
-            if (weight)
-                MODEL(of_stages)(m, weight, lanes, drives, given + j);
-        }
+        const int *path = MODEL(path)[n], own = path[OWN];
+        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]], first = m->first[path[INNER]];
+        const real *const begin = (any(m->surveyed > 0.0) ? m->x : x) + first;
+        MODEL(stand)(m, begin, parameter, drives + STAGES * m->drives, own, lanes, given);
+        if (weight)
+            MODEL(of_stages)(m, weight, lanes, drives, own, given);
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
-        drive += path[OWN] ? lanes : 1;
+        drives += own ? lanes : 1;
     }
 }

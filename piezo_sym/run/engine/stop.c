@@ -16,8 +16,8 @@
 /* How near to a limit, in parts of the step, a place is found: work done there goes with its square. */
 #define FOUND 1e-8
 
-/* Stops on one coordinate, side by side: so many at a time. */
-enum { SOME = 32 };
+/* Stops on one coordinate, side by side: so many at a time, looked for among so many. */
+enum { SOME = 64, SEEN = 16 };
 
 /*
  * What they have: inner state, stiffness, limit. What they give: for the stages the means of effort,
