@@ -202,7 +202,9 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(drive, (STAGES + 1) * m->drives);
     PLACE(yield, YIELD);
 #endif /* PATHS */
-    PLACE(fresh, m->slopes);
+    m->fresh = m->slope; /* of one run there is no lane that keeps its slopes */
+    if (REAL_WIDTH > 1)
+        PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));
 #if defined(BENDS)
     m->bends = sizes[SIZES - 1];

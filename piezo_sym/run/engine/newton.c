@@ -90,7 +90,7 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
     if (!LOSSY)
         MODEL(slopes_split)(m, h, middle);
 #endif /* BENDS */
-    for (long k = 0; k < m->slopes; ++k)
+    for (long k = 0; m->fresh != m->slope && k < m->slopes; ++k)
         m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
     MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
 #if PAIRS
@@ -141,13 +141,15 @@ static mask MODEL(accepted)(const MODEL(block) *m)
  */
 static real MODEL(damping)(const MODEL(block) *m)
 {
+    const long n = m->n;
+    const real *const largest = m->largest, *const x = m->x, *const before = m->prior, *const gap = m->gap;
     real both = zero, prior = NO_SIZE + zero;
 #pragma omp simd reduction(+ : both, prior)
-    for (long k = 0; k < m->n; ++k) {
-        const real size = m->largest[k] + size_of(m->x[k]) + NO_SIZE;
+    for (long k = 0; k < n; ++k) {
+        const real per = 1.0 / (largest[k] + size_of(x[k]) + NO_SIZE);
         for (long j = 0; j < STAGES; ++j) {
-            const real last = m->prior[j * m->n + k] / size;
-            both += last * (m->gap[j * m->n + k] / size);
+            const real last = before[j * n + k] * per;
+            both += last * (gap[j * n + k] * per);
             prior += last * last;
         }
     }
@@ -162,15 +164,17 @@ static real MODEL(damping)(const MODEL(block) *m)
  */
 static mask MODEL(solves)(const MODEL(block) *m, real h)
 {
+    const long n = m->n;
+    const real *const largest = m->largest, *const x = m->x, *const rates = m->rates, *const gap = m->gap;
     real unsolved = zero; /* how many states are */
 #pragma omp simd reduction(+ : unsolved)
-    for (long k = 0; k < m->n; ++k) {
+    for (long k = 0; k < n; ++k) {
         real moved = zero, left = zero;
         for (long j = 0; j < STAGES; ++j) {
-            moved = largest_of(moved, size_of(m->rates[j * m->n + k]));
-            left = largest_of(left, size_of(m->gap[j * m->n + k]));
+            moved = largest_of(moved, size_of(rates[j * n + k]));
+            left = largest_of(left, size_of(gap[j * n + k]));
         }
-        const real most = LEFT * (m->largest[k] + size_of(m->x[k]) + h * moved);
+        const real most = LEFT * (largest[k] + size_of(x[k]) + h * moved);
         unsolved += chosen(h * left <= most, zero, wide(1.0));
     }
     return unsolved == 0.0;
@@ -197,7 +201,7 @@ static mask MODEL(strayed)(const MODEL(block) *m)
 static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
 {
     const long n = m->n;
-    const real *restrict const gap = m->gap;
+    const real *restrict const gap = m->gap, *restrict const largest = m->largest, *restrict const x = m->x;
     real *restrict const rates = m->rates, *restrict const prior = m->prior;
     real worst = zero, lost = zero; /* nan, where a change is none */
 #pragma omp simd reduction(max : worst) reduction(+ : lost)
@@ -211,7 +215,7 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
             moved = largest_of(moved, size_of(rate));
             sum += size_of(change);
         }
-        const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + NO_SIZE;
+        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + NO_SIZE;
         const real noises = h * sum / size;
         worst = chosen(noises > worst, noises, worst);
         lost += 0.0 * noises;

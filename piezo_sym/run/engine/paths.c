@@ -48,17 +48,17 @@ static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c,
     const real *restrict const k = parameter + STIFFNESS * lanes;
     const real *restrict const r = parameter + LIMIT * lanes;
     const real side = chosen(c->rises, wide(1.0), wide(-1.0)), none = wide(-1.0);
-    const real largest = c->largest, least = c->least, far = chosen(c->turns, none, wide(PUT_THERE));
+    const real largest = c->largest, least = c->least, per = 1.0 / c->h, far = chosen(c->turns, none, wide(PUT_THERE));
     for (long i = 0; i < STAGES; ++i) {
         real *restrict const effort = given + i * m->given + EFFORT * lanes;
         real *restrict const slip = given + i * m->given + SLIP * lanes;
         real *restrict const heat = given + i * m->given + HEAT * lanes;
         real *restrict const share = given + i * m->given + SHARE * lanes;
         real *restrict const rate = rates + i * m->n;
-        const real drive = c->rate[i], at_stage = c->at_stage[i], h = c->h;
+        const real drive = c->rate[i], at_stage = c->at_stage[i];
 #pragma omp simd
         for (long j = 0; j < lanes; ++j) {
-            const real limit = side * r[j], put = (limit - z[j]) / h;
+            const real limit = side * r[j], put = (limit - z[j]) * per;
             const real outside = chosen(size_of(z[j] - limit) <= far * r[j], zero, none);
             const real above = chosen(z[j] + largest <= r[j], wide(1.0), outside);
             const real part = chosen(z[j] + least >= -r[j], above, outside);
