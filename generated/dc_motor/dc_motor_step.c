@@ -436,6 +436,19 @@ typedef struct {
  * a complex number of reals, and NAMED(name) tells the two apart.
  */
 
+/* The sum of products over lanes, in parts that do not wait for one another. */
+static inline NUMBER NAMED(total)(const NUMBER *restrict a, const real *restrict b, long lanes)
+{
+    NUMBER sum[4] = {NONE, NONE, NONE, NONE};
+    long j = 0;
+    for (; j + 4 <= lanes; j += 4)
+        for (long part = 0; part < 4; ++part)
+            sum[part] = MORE(sum[part], BY(a[j + part], b[j + part]));
+    for (; j < lanes; ++j)
+        sum[0] = MORE(sum[0], BY(a[j], b[j]));
+    return MORE(MORE(sum[0], sum[1]), MORE(sum[2], sum[3]));
+}
+
 /* How many numbers a factorisation has. */
 static long NAMED(factor_size)(const MODEL(block) *m)
 {
@@ -518,9 +531,8 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
                 NUMBER *const meet = slot + MODEL(meet)[MODEL(first)[k] + r * columns + c];
                 NUMBER sum = NONE;
                 for (long b = 0; b < states; ++b)
-                    for (long j = 0; j < lanes; ++j)
-                        sum = MORE(sum, BY(reaction[(b * columns + c) * lanes + j],
-                                           into[(r * states + b) * lanes + j]));
+                    sum = MORE(sum, NAMED(total)(reaction + (b * columns + c) * lanes,
+                                                 into + (r * states + b) * lanes, lanes));
                 *meet = LESS(*meet, TIMES(gamma, sum));
             }
         lane = into + rows * states * lanes;
@@ -569,8 +581,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
         for (long i = 0; i < rows; ++i) {
             NUMBER sum = NONE;
             for (long b = 0; b < states; ++b)
-                for (long j = 0; j < lanes; ++j)
-                    sum = MORE(sum, BY(r[m->first[state[b]] + j], into[(i * states + b) * lanes + j]));
+                sum = MORE(sum, NAMED(total)(r + m->first[state[b]], into + (i * states + b) * lanes,
+                                             lanes));
             y[row[i]] = MORE(y[row[i]], TIMES(gamma, sum));
         }
         lane = into + rows * states * lanes;
@@ -649,7 +661,9 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(margin, STAGES * MODEL(limits));
     PLACE(rows, STAGES * m->booked);
     PLACE(slope, m->slopes);
-    PLACE(fresh, m->slopes);
+    m->fresh = m->slope; /* of one run there is no lane that keeps its slopes */
+    if (REAL_WIDTH > 1)
+        PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));
 #undef PLACE
     return at;
@@ -774,15 +788,18 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
-    for (long k = 0; k < m->n; ++k) {
+    const long n = m->n;
+    real *const gap = m->gap;
+#pragma omp simd
+    for (long k = 0; k < n; ++k) {
         real one[STAGES];
         for (long i = 0; i < STAGES; ++i) {
             one[i] = zero;
             for (long j = 0; j < STAGES; ++j)
-                one[i] += matrix[i][j] * m->gap[j * m->n + k];
+                one[i] += matrix[i][j] * gap[j * n + k];
         }
         for (long i = 0; i < STAGES; ++i)
-            m->gap[i * m->n + k] = one[i];
+            gap[i * n + k] = one[i];
     }
 }
 
@@ -841,7 +858,7 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
     MODEL(reach_of)(m, h, stage_reach[middle], m->reached);
     MODEL(slopes)(m->reached, m->mean + middle * m->given, m->branch + middle * m->branches,
                   m->u + middle * m->inputs, &m->p, m->fresh);
-    for (long k = 0; k < m->slopes; ++k)
+    for (long k = 0; m->fresh != m->slope && k < m->slopes; ++k)
         m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
     MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
 }
@@ -866,10 +883,10 @@ static mask MODEL(accepted)(const MODEL(block) *m)
         const real *rows = m->rows + i * m->booked + ports + processes;
         real total = zero, lowest = zero;
         good &= MODEL(within)(m->margin + i * MODEL(limits));
+#pragma omp simd reduction(+ : total) reduction(min : lowest)
         for (long k = 0; k < processes; ++k) {
-            const mask less = rows[k] < lowest;
             total += size_of(rows[k]);
-            lowest = chosen(less, rows[k], lowest);
+            lowest = chosen(rows[k] < lowest, rows[k], lowest);
         }
         good &= lowest >= -1e-14 * total;
     }
@@ -883,12 +900,15 @@ static mask MODEL(accepted)(const MODEL(block) *m)
  */
 static real MODEL(damping)(const MODEL(block) *m)
 {
+    const long n = m->n;
+    const real *const largest = m->largest, *const x = m->x, *const before = m->prior, *const gap = m->gap;
     real both = zero, prior = NO_SIZE + zero;
-    for (long k = 0; k < m->n; ++k) {
-        const real size = m->largest[k] + size_of(m->x[k]) + NO_SIZE;
+#pragma omp simd reduction(+ : both, prior)
+    for (long k = 0; k < n; ++k) {
+        const real per = 1.0 / (largest[k] + size_of(x[k]) + NO_SIZE);
         for (long j = 0; j < STAGES; ++j) {
-            const real last = m->prior[j * m->n + k] / size;
-            both += last * (m->gap[j * m->n + k] / size);
+            const real last = before[j * n + k] * per;
+            both += last * (gap[j * n + k] * per);
             prior += last * last;
         }
     }
@@ -903,16 +923,20 @@ static real MODEL(damping)(const MODEL(block) *m)
  */
 static mask MODEL(solves)(const MODEL(block) *m, real h)
 {
-    mask good = none_of(nowhere);
-    for (long k = 0; k < m->n; ++k) {
+    const long n = m->n;
+    const real *const largest = m->largest, *const x = m->x, *const rates = m->rates, *const gap = m->gap;
+    real unsolved = zero; /* how many states are */
+#pragma omp simd reduction(+ : unsolved)
+    for (long k = 0; k < n; ++k) {
         real moved = zero, left = zero;
         for (long j = 0; j < STAGES; ++j) {
-            moved = largest_of(moved, size_of(m->rates[j * m->n + k]));
-            left = largest_of(left, size_of(m->gap[j * m->n + k]));
+            moved = largest_of(moved, size_of(rates[j * n + k]));
+            left = largest_of(left, size_of(gap[j * n + k]));
         }
-        good &= h * left <= LEFT * (m->largest[k] + size_of(m->x[k]) + h * moved);
+        const real most = LEFT * (largest[k] + size_of(x[k]) + h * moved);
+        unsolved += chosen(h * left <= most, zero, wide(1.0));
     }
-    return good;
+    return unsolved == 0.0;
 }
 
 /* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
@@ -935,21 +959,27 @@ static mask MODEL(strayed)(const MODEL(block) *m)
 /* Add part of the change to the rates; returns the largest change of a state, in units of noise. */
 static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
 {
-    real worst = zero;
-    for (long k = 0; k < m->n; ++k) {
+    const long n = m->n;
+    const real *restrict const gap = m->gap, *restrict const largest = m->largest, *restrict const x = m->x;
+    real *restrict const rates = m->rates, *restrict const prior = m->prior;
+    real worst = zero, lost = zero; /* nan, where a change is none */
+#pragma omp simd reduction(max : worst) reduction(+ : lost)
+    for (long k = 0; k < n; ++k) {
         real moved = zero, sum = zero;
         for (long j = 0; j < STAGES; ++j) {
-            real *const rate = m->rates + j * m->n + k;
-            const real change = chosen(where, part * m->gap[j * m->n + k], zero);
-            m->prior[j * m->n + k] = change;
-            *rate += change;
-            moved = largest_of(moved, size_of(*rate));
+            const real all = part * gap[j * n + k], change = chosen(where, all, zero);
+            const real rate = rates[j * n + k] + change;
+            prior[j * n + k] = change;
+            rates[j * n + k] = rate;
+            moved = largest_of(moved, size_of(rate));
             sum += size_of(change);
         }
-        const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + NO_SIZE;
-        worst = largest_of(h * sum / size, worst);
+        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + NO_SIZE;
+        const real noises = h * sum / size;
+        worst = chosen(noises > worst, noises, worst);
+        lost += 0.0 * noises;
     }
-    return worst;
+    return worst + lost;
 }
 
 /*

@@ -520,6 +520,7 @@ typedef struct {
     long drives;
     real *path, *drive; /* parameters of path functionals; drives at stages and at a point */
     real *yield;
+    real surveyed; /* the length of a survey's step; else 0 */
 #endif /* PATHS */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes that step over kinks: each stage chooses its branches */
@@ -544,6 +545,19 @@ typedef struct {
  * then the shared unknowns in the order of the model's tables. Included twice: NUMBER is `real`, or
  * a complex number of reals, and NAMED(name) tells the two apart.
  */
+
+/* The sum of products over lanes, in parts that do not wait for one another. */
+static inline NUMBER NAMED(total)(const NUMBER *restrict a, const real *restrict b, long lanes)
+{
+    NUMBER sum[4] = {NONE, NONE, NONE, NONE};
+    long j = 0;
+    for (; j + 4 <= lanes; j += 4)
+        for (long part = 0; part < 4; ++part)
+            sum[part] = MORE(sum[part], BY(a[j + part], b[j + part]));
+    for (; j < lanes; ++j)
+        sum[0] = MORE(sum[0], BY(a[j], b[j]));
+    return MORE(MORE(sum[0], sum[1]), MORE(sum[2], sum[3]));
+}
 
 /* How many numbers a factorisation has. */
 static long NAMED(factor_size)(const MODEL(block) *m)
@@ -627,9 +641,8 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
                 NUMBER *const meet = slot + MODEL(meet)[MODEL(first)[k] + r * columns + c];
                 NUMBER sum = NONE;
                 for (long b = 0; b < states; ++b)
-                    for (long j = 0; j < lanes; ++j)
-                        sum = MORE(sum, BY(reaction[(b * columns + c) * lanes + j],
-                                           into[(r * states + b) * lanes + j]));
+                    sum = MORE(sum, NAMED(total)(reaction + (b * columns + c) * lanes,
+                                                 into + (r * states + b) * lanes, lanes));
                 *meet = LESS(*meet, TIMES(gamma, sum));
             }
         lane = into + rows * states * lanes;
@@ -678,8 +691,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
         for (long i = 0; i < rows; ++i) {
             NUMBER sum = NONE;
             for (long b = 0; b < states; ++b)
-                for (long j = 0; j < lanes; ++j)
-                    sum = MORE(sum, BY(r[m->first[state[b]] + j], into[(i * states + b) * lanes + j]));
+                sum = MORE(sum, NAMED(total)(r + m->first[state[b]], into + (i * states + b) * lanes,
+                                             lanes));
             y[row[i]] = MORE(y[row[i]], TIMES(gamma, sum));
         }
         lane = into + rows * states * lanes;
@@ -772,7 +785,9 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(drive, (STAGES + 1) * m->drives);
     PLACE(yield, YIELD);
 #endif /* PATHS */
-    PLACE(fresh, m->slopes);
+    m->fresh = m->slope; /* of one run there is no lane that keeps its slopes */
+    if (REAL_WIDTH > 1)
+        PLACE(fresh, m->slopes);
     PLACE(real_factor, MODEL(factor_size_real)(m));
 #undef PLACE
     return at;
@@ -811,19 +826,9 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
 }
 
 /*
- * A path functional: what an element with an inner state z does while its coordinate C, whose rates
- * at the stages are its drive, follows a polynomial. Comes after gauss.c, for models that have
- * PATHS.
- *
- * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of the slip's rate
- * dC/dt - dz/dt and of the heat. So h sum_i b_i F_i C'_i is the work int F dC, and z ends where its
- * path ends, wherever it begins or ceases to yield.
+ * The way of a coordinate C in a step, whose rates at the stages are the drive of path functionals.
+ * Comes after gauss.c, for models that have PATHS.
  */
-
-/* Parts of a step: what happens before this is at its begin. */
-#define BEGUN 1e-6
-/* An inner state so near to its limit, relative to it, was put there by the step before. */
-#define PUT_THERE 1e-14
 
 /*
  * The path of a coordinate in a step: the coefficients of C(tau) - C(0) and of dC/dtau; its change
@@ -836,9 +841,6 @@ typedef struct {
     double h, most, yields, times;
     long pieces;
 } MODEL(way);
-
-/* Means for the stages: effort, rate of the slip and heat. */
-typedef double MODEL(means)[SHARE][STAGES];
 
 static double MODEL(polynomial)(const double *a, long degree, double at)
 {
@@ -927,85 +929,208 @@ static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, M
 }
 
 /*
- * Add the means over a piece of a step in which F = at_begin + k (C - C(0)): z follows C, or
- * yields.
+ * A path functional: what an element with an inner state z does while its coordinate C, whose rates
+ * at the stages are its drive, follows a polynomial. Comes after way.c.
+ *
+ * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of the slip's rate
+ * dC/dt - dz/dt and of the heat. So h sum_i b_i F_i C'_i is the work int F dC, and z ends where its
+ * path ends, wherever it begins or ceases to yield.
+ *
+ * Stops on one coordinate have one polynomial: they are computed side by side, without branches.
  */
-static void MODEL(add_piece)(const MODEL(way) *w, double low, double high, double at_begin, double k,
-                             int yields, MODEL(means) mean)
+
+/* Parts of a step: what happens before this is at its begin. */
+#define BEGUN 1e-6
+/* An inner state so near to its limit, relative to it, was put there by the step before. */
+#define PUT_THERE 1e-14
+/* How near to a limit, in parts of the step, a place is found: work done there goes with its square. */
+#define FOUND 1e-8
+
+/* Stops on one coordinate, side by side: so many at a time, looked for among so many. */
+enum { SOME = 64, SEEN = 16 };
+
+/*
+ * What they have: inner state, stiffness, limit. What they give: for the stages the means of effort,
+ * rate of the slip and heat, and the share of the step in which z follows C. On the way: where z is
+ * and whether it yields, the heat, and where in a piece of the step it comes to its limit.
+ */
+typedef struct {
+    long count;
+    double z[SOME], k[SOME], r[SOME];
+    double mean[SHARE][STAGES][SOME], share[SOME];
+    double now[SOME], yields[SOME], heat[SOME], room[SOME], meets[SOME], until[SOME];
+    double lead[STAGES][SOME], moved[STAGES][SOME];
+} MODEL(stops);
+
+/* A piece of a step, in which C is monotonic: its ends, C there, and the side to which it goes. */
+typedef struct {
+    double low, high, from, more, side;
+} MODEL(piece);
+
+/*
+ * The piece's part up to which z follows C: to the end, or to where C reaches what is left to the
+ * limit. By Newton's method and bisection, in all lanes as long as one of them moves.
+ */
+static void MODEL(find_limits)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
-    for (long q = 0; q < STAGES; ++q) { /* exact: all integrands are of degree < 2s */
-        const double at = low + (high - low) * stage_at[q];
-        const double effort = at_begin + k * MODEL(polynomial)(w->gone, STAGES, at);
-        const double rate = MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h;
-        for (long i = 0; i < STAGES; ++i) {
-            double part = (high - low) * stage_weight[q] * (stage_lead[i] / stage_weight[i]);
-            for (long j = 0; j < STAGES; ++j)
-                part *= j == i ? 1.0 : at - stage_at[j];
-            mean[EFFORT][i] += part * effort;
-            if (yields) {
-                mean[SLIP][i] += part * rate;
-                mean[HEAT][i] += part * effort * rate;
+    double low[SOME], high[SOME], moving = 0.0;
+    for (long j = 0; j < s->count; ++j) {
+        const double left = piece->side * s->r[j] - s->now[j];
+        const double room = fabs(left) <= PUT_THERE * s->r[j] ? 0.0 : left;
+        const double meets = fabs(piece->more) > fabs(room) ? 1.0 : 0.0;
+        const double part = meets > 0.0 ? room / piece->more : 1.0;
+        s->room[j] = room, s->meets[j] = meets;
+        low[j] = piece->low, high[j] = piece->high;
+        s->until[j] = piece->low + part * (piece->high - piece->low);
+        moving += part > 0.0 && part < 1.0 ? 1.0 : 0.0;
+    }
+    for (int again = 0; STAGES > 1 && again < 100 && moving > 0.0; ++again) {
+        moving = 0.0;
+#pragma omp simd reduction(+ : moving)
+        for (long j = 0; j < s->count; ++j) {
+            const double at = s->until[j];
+            double sum = w->gone[STAGES], slope = 0.0;
+            for (long n = STAGES; n-- > 0;) {
+                slope = sum + at * slope;
+                sum = w->gone[n] + at * sum;
             }
+            const double over = piece->side * (sum - piece->from - s->room[j]);
+            const double below = over < 0.0 ? at : low[j], above = over < 0.0 ? high[j] : at;
+            const double next = at - piece->side * over / slope, half = 0.5 * (below + above);
+            const double inside = next > below && next < above ? next : half;
+            const double search = s->meets[j] > 0.0 && s->room[j] != 0.0 ? 1.0 : 0.0;
+            low[j] = below, high[j] = above;
+            s->until[j] = search > 0.0 ? inside : at;
+            moving += search > 0.0 && fabs(inside - at) > FOUND ? 1.0 : 0.0;
         }
     }
 }
 
 /*
- * A stop element: F = k z; z follows C, but stays at -r or r while C goes further. Returns the part
- * of the step in which z follows C.
+ * Add the means of the effort in a piece's part in which z follows C: F = k (now + C - C(low)).
+ * Integrals of the stages' weights over that part, and of these times the rate of C, are in `lead`
+ * and `moved`. Exact: all integrands are of degree < 2s.
  */
-static double MODEL(stop)(MODEL(way) *w, double z, double k, double r, MODEL(means) mean)
+static void MODEL(add_following)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
-    const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
-    double now = begin, heat = 0.5 * k * (z - begin) * (z + begin), moving = 0.0;
-    double yielded = 0.0, slipped = 0.0;
-    int yielding = 0;
-    memset(mean, 0, sizeof(MODEL(means)));
-    if (fabs(z) + w->most <= r) {
-        for (long i = 0; i < STAGES; ++i)
-            mean[EFFORT][i] = k * (z + w->at_stage[i]);
-        return 1.0;
+    memset(s->lead, 0, sizeof s->lead);
+    memset(s->moved, 0, sizeof s->moved);
+    for (long q = 0; q < STAGES; ++q)
+#pragma omp simd
+        for (long j = 0; j < s->count; ++j) {
+            const double length = s->until[j] - piece->low, at = piece->low + length * stage_at[q];
+            const double gone = MODEL(polynomial)(w->gone, STAGES, at) - piece->from;
+            const double effort = s->k[j] * (s->now[j] + gone);
+            const double rate = MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h;
+            for (long i = 0; i < STAGES; ++i) {
+                double part = length * stage_weight[q] * (stage_lead[i] / stage_weight[i]);
+                for (long n = 0; n < STAGES; ++n)
+                    part *= n == i ? 1.0 : at - stage_at[n];
+                s->lead[i][j] += part;
+                s->moved[i][j] += part * rate;
+                s->mean[EFFORT][i][j] += part * effort;
+            }
+        }
+}
+
+/* Add the means of the piece's rest, in which z stays at its limit: all but the part before. */
+static void MODEL(add_yielding)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+{
+    const double length = piece->high - piece->low;
+    for (long i = 0; i < STAGES; ++i) {
+        double lead = 0.0, moved = 0.0;
+        for (long q = 0; q < STAGES; ++q) {
+            const double at = piece->low + length * stage_at[q];
+            double part = length * stage_weight[q] * (stage_lead[i] / stage_weight[i]);
+            for (long n = 0; n < STAGES; ++n)
+                part *= n == i ? 1.0 : at - stage_at[n];
+            lead += part;
+            moved += part * (MODEL(polynomial)(w->speed, STAGES - 1, at) / w->h);
+        }
+#pragma omp simd
+        for (long j = 0; j < s->count; ++j) {
+            const double effort = s->k[j] * (piece->side * s->r[j]);
+            const double slip = s->meets[j] > 0.0 ? moved - s->moved[i][j] : 0.0;
+            s->mean[EFFORT][i][j] += s->meets[j] > 0.0 ? effort * (lead - s->lead[i][j]) : 0.0;
+            s->mean[SLIP][i][j] += slip;
+            s->mean[HEAT][i][j] += effort * slip;
+        }
+    }
+}
+
+/* Take stops to the end of a piece, and note where they begin, or cease, to yield. */
+static void MODEL(pass)(MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+{
+    double first = w->yields, times = 0.0;
+#pragma omp simd reduction(+ : times) reduction(min : first)
+    for (long j = 0; j < s->count; ++j) {
+        const double until = s->until[j], limit = piece->side * s->r[j];
+        const double begins = s->meets[j] > 0.0 ? until : 1.0;
+        const double place = s->yields[j] > 0.0 && until > piece->low ? piece->low : begins;
+        const double inside = place > BEGUN && place < 1.0 ? place : 1.0;
+        const double beyond = s->k[j] * s->r[j] * (fabs(piece->more) - fabs(s->room[j]));
+        times += inside < 1.0 ? 1.0 : 0.0;
+        first = inside < first ? inside : first;
+        s->heat[j] += s->meets[j] > 0.0 ? beyond : 0.0;
+        s->now[j] = s->meets[j] > 0.0 ? limit : s->now[j] + piece->more;
+        s->share[j] += until - piece->low;
+        s->yields[j] = s->meets[j];
+    }
+    w->yields = first;
+    w->times += times;
+}
+
+/*
+ * Let the means add up to all of the slip and all of the heat. A stage's mean of the heat may be
+ * negative: it becomes 0, the others are scaled to the total.
+ */
+static void MODEL(settle)(const MODEL(way) *w, MODEL(stops) *s)
+{
+    const double gone = MODEL(polynomial)(w->gone, STAGES, 1.0);
+#pragma omp simd
+    for (long j = 0; j < s->count; ++j) {
+        double yielded = 0.0, slipped = 0.0;
+        for (long i = 0; i < STAGES; ++i) {
+            const double heat = s->mean[HEAT][i][j] > 0.0 ? s->mean[HEAT][i][j] : 0.0;
+            s->mean[HEAT][i][j] = heat;
+            yielded += stage_weight[i] * heat;
+            slipped += stage_weight[i] * s->mean[SLIP][i][j];
+        }
+        const double rest = (gone - (s->now[j] - s->z[j])) / w->h - slipped;
+        const double heat = s->heat[j] / w->h, part = yielded > 0.0 ? heat / yielded : 0.0;
+        for (long i = 0; i < STAGES; ++i) {
+            s->mean[HEAT][i][j] = yielded > 0.0 ? part * s->mean[HEAT][i][j] : heat;
+            s->mean[SLIP][i][j] += rest;
+        }
+    }
+}
+
+/*
+ * Stop elements: F = k z; z follows C, but stays at -r or r while C goes further.
+ */
+static void MODEL(stop)(MODEL(way) *w, MODEL(stops) *s)
+{
+    memset(s->mean, 0, sizeof s->mean);
+    for (long j = 0; j < s->count; ++j) {
+        const double z = s->z[j], r = s->r[j];
+        const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
+        s->now[j] = begin;
+        s->heat[j] = 0.5 * s->k[j] * (z - begin) * (z + begin);
+        s->share[j] = s->yields[j] = 0.0;
     }
     if (!w->pieces)
         MODEL(find_turns)(w);
     for (long n = 0; n < w->pieces; ++n) {
-        const double low = w->turn[n], high = w->turn[n + 1];
-        const double from = MODEL(polynomial)(w->gone, STAGES, low);
-        const double more = MODEL(polynomial)(w->gone, STAGES, high) - from;
-        const double limit = more > 0.0 ? r : -r, left = limit - now;
-        const double room = fabs(left) <= PUT_THERE * r ? 0.0 : left;
-        const int yields = fabs(more) > fabs(room);
-        const double until = !yields ? high
-            : room == 0.0            ? low
-                                     : MODEL(meets)(w->gone, STAGES, from + room, low, high);
-        MODEL(add_piece)(w, low, until, k * (now - from), k, 0, mean);
-        const double place = yielding && until > low ? low : yields ? until : 1.0;
-        if (place > BEGUN && place < 1.0) {
-            w->yields = place < w->yields ? place : w->yields;
-            ++w->times;
-        }
-        yielding = yields;
-        moving += until - low;
-        now = yields ? limit : now + more;
-        if (yields) {
-            MODEL(add_piece)(w, until, high, k * limit, 0.0, 1, mean);
-            heat += k * r * (fabs(more) - fabs(room));
-        }
+        MODEL(piece) piece = {.low = w->turn[n], .high = w->turn[n + 1]};
+        piece.from = MODEL(polynomial)(w->gone, STAGES, piece.low);
+        piece.more = MODEL(polynomial)(w->gone, STAGES, piece.high) - piece.from;
+        piece.side = piece.more > 0.0 ? 1.0 : -1.0;
+        MODEL(find_limits)(w, &piece, s);
+        MODEL(add_following)(w, &piece, s);
+        MODEL(add_yielding)(w, &piece, s);
+        MODEL(pass)(w, &piece, s);
     }
-    /*
-     * a stage's mean of the heat may be negative: it becomes 0, the others are scaled to the total
-     */
-    for (long i = 0; i < STAGES; ++i) {
-        mean[HEAT][i] = fmax(mean[HEAT][i], 0.0);
-        yielded += stage_weight[i] * mean[HEAT][i];
-        slipped += stage_weight[i] * mean[SLIP][i];
-    }
-    const double rest = (MODEL(polynomial)(w->gone, STAGES, 1.0) - (now - z)) / w->h - slipped;
-    for (long i = 0; i < STAGES; ++i) {
-        mean[HEAT][i] = heat / w->h * (yielded > 0.0 ? mean[HEAT][i] / yielded : 1.0);
-        mean[SLIP][i] += rest;
-    }
-    return moving;
+    MODEL(settle)(w, s);
 }
 
 /*
@@ -1055,42 +1180,101 @@ static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c,
                                   const real *restrict z, const real *restrict parameter,
                                   real *restrict given, real *restrict rates)
 {
-    const real *const k = parameter + STIFFNESS * lanes, *const r = parameter + LIMIT * lanes;
-    const real side = chosen(c->rises, wide(1.0), wide(-1.0));
-    real *const share = given + SHARE * lanes;
-    for (long j = 0; j < lanes; ++j) {
-        const mask follows = (z[j] + c->largest <= r[j]) & (z[j] + c->least >= -r[j]);
-        const mask yields = (size_of(z[j] - side * r[j]) <= PUT_THERE * r[j]) & none_of(c->turns);
-        share[j] = chosen(follows, wide(1.0), chosen(yields, zero, wide(-1.0)));
-    }
+    const real *restrict const k = parameter + STIFFNESS * lanes;
+    const real *restrict const r = parameter + LIMIT * lanes;
+    const real side = chosen(c->rises, wide(1.0), wide(-1.0)), none = wide(-1.0);
+    const real largest = c->largest, least = c->least, per = 1.0 / c->h;
+    const real far = chosen(c->turns, none, wide(PUT_THERE));
     for (long i = 0; i < STAGES; ++i) {
-        real *const row = given + i * m->given, *const rate = rates + i * m->n;
+        real *restrict const effort = given + i * m->given + EFFORT * lanes;
+        real *restrict const slip = given + i * m->given + SLIP * lanes;
+        real *restrict const heat = given + i * m->given + HEAT * lanes;
+        real *restrict const share = given + i * m->given + SHARE * lanes;
+        real *restrict const rate = rates + i * m->n;
+        const real drive = c->rate[i], at_stage = c->at_stage[i];
+#pragma omp simd
         for (long j = 0; j < lanes; ++j) {
-            const mask yields = share[j] == 0.0;
-            const real limit = side * r[j], put = (limit - z[j]) / c->h;
-            const real effort = k[j] * chosen(yields, limit, z[j] + c->at_stage[i]);
-            row[EFFORT * lanes + j] = effort;
-            row[SLIP * lanes + j] = chosen(yields, c->rate[i] - put, zero);
-            row[HEAT * lanes + j] = chosen(yields, effort * c->rate[i], zero);
-            row[SHARE * lanes + j] = share[j];
-            rate[j] = chosen(yields, put, c->rate[i]);
+            const real limit = side * r[j], put = (limit - z[j]) * per;
+            const real outside = chosen(size_of(z[j] - limit) <= far * r[j], zero, none);
+            const real above = chosen(z[j] + largest <= r[j], wide(1.0), outside);
+            const real part = chosen(z[j] + least >= -r[j], above, outside);
+            const real there = z[j] + at_stage, yields = chosen(part == 0.0, wide(1.0), zero);
+            const real force = k[j] * chosen(part == 0.0, limit, there);
+            share[j] = part;
+            effort[j] = force;
+            slip[j] = yields * (drive - put);
+            heat[j] = yields * (force * drive);
+            rate[j] = chosen(part == 0.0, put, drive);
         }
     }
 }
 
-/* Lane j of a path functional, in one lane of numbers. */
-static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, long j, long lanes, int lane,
-                              const real *z, const real *parameter, real *given, real *rates)
+/* Compute stops of one coordinate, lanes `which` of a bank, in one lane of numbers. */
+static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, MODEL(stops) *s, const long *which,
+                              long lanes, int lane, const real *z, const real *parameter, real *given,
+                              real *rates)
 {
-    MODEL(means) mean;
-    const double k = LANE(parameter, STIFFNESS * lanes + j, lane);
-    const double share =
-        MODEL(stop)(w, LANE(z, j, lane), k, LANE(parameter, LIMIT * lanes + j, lane), mean);
+    for (long k = 0; k < s->count; ++k) {
+        s->z[k] = LANE(z, which[k], lane);
+        s->k[k] = LANE(parameter, STIFFNESS * lanes + which[k], lane);
+        s->r[k] = LANE(parameter, LIMIT * lanes + which[k], lane);
+    }
+    MODEL(stop)(w, s);
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < s->count; ++k) {
+            const long j = which[k];
+            for (long what = 0; what < SHARE; ++what)
+                LANE(given + i * m->given, what * lanes + j, lane) = s->mean[what][i][k];
+            LANE(given + i * m->given, SHARE * lanes + j, lane) = s->share[k];
+            LANE(rates, i * m->n + j, lane) = w->rate[i] - s->mean[SLIP][i][k];
+        }
+}
+
+/* The same for those of a bank's lanes that are not in closed form: their share is negative. */
+static void MODEL(along_others)(const MODEL(block) *m, MODEL(way) *w, long lanes, int lane,
+                                const real *z, const real *parameter, real *given, real *rates)
+{
+    const real *const share = given + SHARE * lanes;
+    MODEL(stops) some;
+    long which[SOME];
+    some.count = 0;
+    for (long j = 0; j < lanes; j += SEEN) {
+        const long end = j + SEEN < lanes ? j + SEEN : lanes;
+        double others = 0.0;
+#pragma omp simd reduction(+ : others)
+        for (long k = j; k < end; ++k)
+            others += LANE(share, k, lane) < 0.0 ? 1.0 : 0.0;
+        for (long k = j; others > 0.0 && k < end; ++k) {
+            which[some.count] = k;
+            some.count += LANE(share, k, lane) < 0.0;
+        }
+        if (some.count + SEEN > SOME || (end == lanes && some.count)) {
+            MODEL(along_path)(m, w, &some, which, lanes, lane, z, parameter, given, rates);
+            some.count = 0;
+        }
+    }
+}
+
+/* Each lane of a bank by itself, from drive number `drive` on: each has a way of its own if `own`. */
+static void MODEL(along_each)(const MODEL(block) *m, MODEL(way) *w, long drive, int own, long lanes,
+                              int lane, const real *z, const real *parameter, real *given, real *rates)
+{
+    MODEL(stops) one;
+    one.count = 1;
+    for (long j = 0; j < lanes; ++j) {
+        if (j && own)
+            MODEL(find_way)(m, w->h, drive + j, lane, w);
+        MODEL(along_path)(m, w, &one, &j, lanes, lane, z, parameter, given, rates);
+    }
+}
+
+/* The drives at the stages. */
+static void MODEL(find_drives)(const MODEL(block) *m, real h)
+{
     for (long i = 0; i < STAGES; ++i) {
-        for (long what = 0; what < SHARE; ++what)
-            LANE(given + i * m->given, what * lanes + j, lane) = mean[what][i];
-        LANE(given + i * m->given, SHARE * lanes + j, lane) = share;
-        LANE(rates, i * m->n + j, lane) = w->rate[i] - mean[SLIP][i];
+        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
+        MODEL(drives)(m->reached, m->mean + i * m->given, m->branch + i * m->branches,
+                      m->u + i * m->inputs, &m->p, m->drive + i * m->drives);
     }
 }
 
@@ -1105,11 +1289,7 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
     long drive = 0;
     m->yield[EARLIEST] = wide(1.0);
     m->yield[HOW_OFTEN] = zero;
-    for (long i = 0; i < STAGES; ++i) {
-        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
-        MODEL(drives)(m->reached, m->mean + i * m->given, m->branch + i * m->branches,
-                      m->u + i * m->inputs, &m->p, m->drive + i * m->drives);
-    }
+    MODEL(find_drives)(m, h);
     for (long n = 0; n < PATHS; ++n) {
         const int *path = MODEL(path)[n];
         const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]], first = m->first[path[INNER]];
@@ -1126,17 +1306,14 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
             const MODEL(course) c = MODEL(course_of)(w, h);
             MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
         }
-        for (long j = 0; j < lanes; ++j)
-            for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-                if (together && LANE(given, SHARE * lanes + j, lane) >= 0.0)
-                    continue;
-                if (j && path[OWN])
-                    MODEL(find_way)(m, OF(h, lane), drive + j, lane, w + lane);
-                MODEL(along_path)(m, w + lane, j, lanes, lane, z, parameter, given, rates);
-            }
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            LANE(m->yield, EARLIEST, lane) = w[lane].yields;
-            LANE(m->yield, HOW_OFTEN, lane) = w[lane].times;
+            MODEL(way) *const way = w + lane;
+            if (together)
+                MODEL(along_others)(m, way, lanes, lane, z, parameter, given, rates);
+            else
+                MODEL(along_each)(m, way, drive, path[OWN], lanes, lane, z, parameter, given, rates);
+            LANE(m->yield, EARLIEST, lane) = way->yields;
+            LANE(m->yield, HOW_OFTEN, lane) = way->times;
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
         drive += path[OWN] ? lanes : 1;
@@ -1148,46 +1325,69 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
  * which it yields, slip follows the drive there: an inner state that does not move has no misfit.
  */
 static void MODEL(of_stages)(const MODEL(block) *m, const double *weight, long lanes, const real *drives,
-                             real *given)
+                             int own, real *restrict given)
 {
-    const real *mean = m->mean + (given - m->node);
-    const real yields = 1.0 - mean[SHARE * lanes];
-    real slip = yields * drives[STAGES * m->drives], heat = zero;
-    for (long i = 0; i < STAGES; ++i, mean += m->given) {
-        slip += weight[i] * (mean[SLIP * lanes] - yields * drives[i * m->drives]);
-        heat += weight[i] * mean[HEAT * lanes];
+    const real *const mean = m->mean + (given - m->node);
+#pragma omp simd
+    for (long j = 0; j < lanes; ++j) {
+        const real *const drive = drives + own * j;
+        const real yields = 1.0 - mean[SHARE * lanes + j];
+        real slip = yields * drive[STAGES * m->drives], heat = zero;
+        for (long i = 0; i < STAGES; ++i) {
+            const real *const stage = mean + i * m->given + j;
+            slip += weight[i] * (stage[SLIP * lanes] - yields * drive[i * m->drives]);
+            heat += weight[i] * stage[HEAT * lanes];
+        }
+        given[SLIP * lanes + j] = slip;
+        given[HEAT * lanes + j] = heat;
     }
-    given[SLIP * lanes] = slip;
-    given[HEAT * lanes] = heat;
+}
+
+/*
+ * Stops where they stand: at its limit one yields if its coordinate goes on outward. In the middle of a
+ * survey's step, which begins at m->x: halfway to where the present rate leads it.
+ */
+static void MODEL(stand)(const MODEL(block) *m, const real *restrict begin, const real *restrict parameter,
+                         const real *drives, int own, long lanes, real *restrict given)
+{
+    const real h = m->surveyed, per = chosen(h > 0.0, 1.0 / h, zero), part = chosen(h > 0.0, wide(0.5), zero);
+    real *restrict const slip = given + SLIP * lanes;
+    for (long j = 0; j < lanes; ++j)
+        slip[j] = drives[own * j];
+#pragma omp simd
+    for (long j = 0; j < lanes; ++j) {
+        const real k = parameter[STIFFNESS * lanes + j], r = parameter[LIMIT * lanes + j], rate = slip[j];
+        const real went = begin[j] + h * rate, below = chosen(went > r, r, went);
+        const real end = chosen(below < -r, -r, below);
+        const real z = part * begin[j] + (1.0 - part) * end;
+        const real ahead = end * rate, outward = chosen(r > 0.0, ahead, wide(1.0));
+        const real near = r * (1.0 - AT_LIMIT), out = chosen(size_of(end) >= near, outward, zero);
+        const real yields = chosen(out > 0.0, wide(1.0), zero);
+        const real slips = yields * (rate - (end - begin[j]) * per);
+        given[EFFORT * lanes + j] = k * z;
+        slip[j] = slips;
+        given[HEAT * lanes + j] = k * z * slips;
+        given[SHARE * lanes + j] = 1.0 - yields;
+    }
 }
 
 /* What path functionals give at a point: it follows from the drives there, or `of_stages` (`weight`). */
 static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
                             const double *weight)
 {
-    const real *parameter = m->path;
+    const real *parameter = m->path, *drives = m->drive;
     real *given = m->node + m->means;
-    long drive = 0;
     MODEL(path_parameters)(x, &m->p, m->path);
     MODEL(drives)(x, m->node, branch, u, &m->p, m->drive + STAGES * m->drives);
     for (long n = 0; n < PATHS; ++n) {
-        const int *path = MODEL(path)[n];
-        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]];
-        for (long j = 0; j < lanes; ++j) {
-            const real k = parameter[STIFFNESS * lanes + j], r = parameter[LIMIT * lanes + j];
-            const real inner = x[m->first[path[INNER]] + j], z = least(largest_of(inner, -r), r);
-            const real *const drives = m->drive + drive + path[OWN] * j;
-            const real rate = drives[STAGES * m->drives];
-            const mask yields = (size_of(z) >= r * (1.0 - AT_LIMIT)) & ((z * rate > 0.0) | (r <= 0.0));
-            given[EFFORT * lanes + j] = k * z;
-            given[SLIP * lanes + j] = chosen(yields, rate, zero);
-            given[HEAT * lanes + j] = chosen(yields, k * z * rate, zero);
-            given[SHARE * lanes + j] = chosen(yields, zero, wide(1.0));
-            if (weight)
-                MODEL(of_stages)(m, weight, lanes, drives, given + j);
-        }
+        const int *path = MODEL(path)[n], own = path[OWN];
+        const long lanes = path[BANK] < 0 ? 1 : m->lanes[path[BANK]], first = m->first[path[INNER]];
+        const real *const begin = (any(m->surveyed > 0.0) ? m->x : x) + first;
+        MODEL(stand)(m, begin, parameter, drives + STAGES * m->drives, own, lanes, given);
+        if (weight)
+            MODEL(of_stages)(m, weight, lanes, drives, own, given);
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
-        drive += path[OWN] ? lanes : 1;
+        drives += own ? lanes : 1;
     }
 }
 
@@ -1281,15 +1481,18 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
-    for (long k = 0; k < m->n; ++k) {
+    const long n = m->n;
+    real *const gap = m->gap;
+#pragma omp simd
+    for (long k = 0; k < n; ++k) {
         real one[STAGES];
         for (long i = 0; i < STAGES; ++i) {
             one[i] = zero;
             for (long j = 0; j < STAGES; ++j)
-                one[i] += matrix[i][j] * m->gap[j * m->n + k];
+                one[i] += matrix[i][j] * gap[j * n + k];
         }
         for (long i = 0; i < STAGES; ++i)
-            m->gap[i * m->n + k] = one[i];
+            gap[i * n + k] = one[i];
     }
 }
 
@@ -1351,7 +1554,7 @@ static void MODEL(prepare)(const MODEL(block) *m, real h, mask where)
     MODEL(reach_of)(m, h, stage_reach[middle], m->reached);
     MODEL(slopes)(m->reached, m->mean + middle * m->given, m->branch + middle * m->branches,
                   m->u + middle * m->inputs, &m->p, m->fresh);
-    for (long k = 0; k < m->slopes; ++k)
+    for (long k = 0; m->fresh != m->slope && k < m->slopes; ++k)
         m->slope[k] = chosen(where, m->fresh[k], m->slope[k]);
     MODEL(factorise_real)(m, h * filter, m->slope, m->real_factor);
 }
@@ -1376,10 +1579,10 @@ static mask MODEL(accepted)(const MODEL(block) *m)
         const real *rows = m->rows + i * m->booked + ports + processes;
         real total = zero, lowest = zero;
         good &= MODEL(within)(m->margin + i * MODEL(limits));
+#pragma omp simd reduction(+ : total) reduction(min : lowest)
         for (long k = 0; k < processes; ++k) {
-            const mask less = rows[k] < lowest;
             total += size_of(rows[k]);
-            lowest = chosen(less, rows[k], lowest);
+            lowest = chosen(rows[k] < lowest, rows[k], lowest);
         }
         good &= lowest >= -1e-14 * total;
     }
@@ -1393,12 +1596,15 @@ static mask MODEL(accepted)(const MODEL(block) *m)
  */
 static real MODEL(damping)(const MODEL(block) *m)
 {
+    const long n = m->n;
+    const real *const largest = m->largest, *const x = m->x, *const before = m->prior, *const gap = m->gap;
     real both = zero, prior = NO_SIZE + zero;
-    for (long k = 0; k < m->n; ++k) {
-        const real size = m->largest[k] + size_of(m->x[k]) + NO_SIZE;
+#pragma omp simd reduction(+ : both, prior)
+    for (long k = 0; k < n; ++k) {
+        const real per = 1.0 / (largest[k] + size_of(x[k]) + NO_SIZE);
         for (long j = 0; j < STAGES; ++j) {
-            const real last = m->prior[j * m->n + k] / size;
-            both += last * (m->gap[j * m->n + k] / size);
+            const real last = before[j * n + k] * per;
+            both += last * (gap[j * n + k] * per);
             prior += last * last;
         }
     }
@@ -1413,16 +1619,20 @@ static real MODEL(damping)(const MODEL(block) *m)
  */
 static mask MODEL(solves)(const MODEL(block) *m, real h)
 {
-    mask good = none_of(nowhere);
-    for (long k = 0; k < m->n; ++k) {
+    const long n = m->n;
+    const real *const largest = m->largest, *const x = m->x, *const rates = m->rates, *const gap = m->gap;
+    real unsolved = zero; /* how many states are */
+#pragma omp simd reduction(+ : unsolved)
+    for (long k = 0; k < n; ++k) {
         real moved = zero, left = zero;
         for (long j = 0; j < STAGES; ++j) {
-            moved = largest_of(moved, size_of(m->rates[j * m->n + k]));
-            left = largest_of(left, size_of(m->gap[j * m->n + k]));
+            moved = largest_of(moved, size_of(rates[j * n + k]));
+            left = largest_of(left, size_of(gap[j * n + k]));
         }
-        good &= h * left <= LEFT * (m->largest[k] + size_of(m->x[k]) + h * moved);
+        const real most = LEFT * (largest[k] + size_of(x[k]) + h * moved);
+        unsolved += chosen(h * left <= most, zero, wide(1.0));
     }
-    return good;
+    return unsolved == 0.0;
 }
 
 /* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
@@ -1445,21 +1655,27 @@ static mask MODEL(strayed)(const MODEL(block) *m)
 /* Add part of the change to the rates; returns the largest change of a state, in units of noise. */
 static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
 {
-    real worst = zero;
-    for (long k = 0; k < m->n; ++k) {
+    const long n = m->n;
+    const real *restrict const gap = m->gap, *restrict const largest = m->largest, *restrict const x = m->x;
+    real *restrict const rates = m->rates, *restrict const prior = m->prior;
+    real worst = zero, lost = zero; /* nan, where a change is none */
+#pragma omp simd reduction(max : worst) reduction(+ : lost)
+    for (long k = 0; k < n; ++k) {
         real moved = zero, sum = zero;
         for (long j = 0; j < STAGES; ++j) {
-            real *const rate = m->rates + j * m->n + k;
-            const real change = chosen(where, part * m->gap[j * m->n + k], zero);
-            m->prior[j * m->n + k] = change;
-            *rate += change;
-            moved = largest_of(moved, size_of(*rate));
+            const real all = part * gap[j * n + k], change = chosen(where, all, zero);
+            const real rate = rates[j * n + k] + change;
+            prior[j * n + k] = change;
+            rates[j * n + k] = rate;
+            moved = largest_of(moved, size_of(rate));
             sum += size_of(change);
         }
-        const real size = NOISE * (m->largest[k] + size_of(m->x[k]) + h * moved) + NO_SIZE;
-        worst = largest_of(h * sum / size, worst);
+        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + NO_SIZE;
+        const real noises = h * sum / size;
+        worst = chosen(noises > worst, noises, worst);
+        lost += 0.0 * noises;
     }
-    return worst;
+    return worst + lost;
 }
 
 /*

@@ -7,6 +7,7 @@
     long     a run a hundred times as long                               runs
     making   derivation, proofs, files; small banks and large            making
     sweep    many runs                                                   sweeps
+    hysteresis  stops and a Bouc-Wen spring, models of their own         hysteresis
 
 Input: a `Model`, what drives it, and `Settings`.  Output: a `Report`.  All is measured in one
 process, in turns, so that its ratios hold on a busy machine too.
@@ -20,6 +21,7 @@ from typing import TYPE_CHECKING
 
 from piezo_sym.errors import UsageError, nearest, quote
 from tests.benchmarks.case_p import problem_of
+from tests.benchmarks.hysteresis import hysteresis_rows
 from tests.benchmarks.machine import machine
 from tests.benchmarks.making import making_rows
 from tests.benchmarks.peers import PEERS
@@ -54,7 +56,10 @@ GROUPS: Mapping[str, Callable[[Problem, Settings], Part]] = {
     "long": _long,
     "making": making_rows,
     "sweep": sweep_rows,
+    "hysteresis": hysteresis_rows,
 }
+#: Groups that have models of their own.
+OWN = frozenset({"hysteresis"})
 
 
 def bench(
@@ -73,7 +78,7 @@ def bench(
     inputs : constants and sines; the spec's defaults where nothing is said, but for the paper's
         actuator, which is driven as in case P.
     duration : of the short run [s]; the long one takes a hundred times as long.
-    only : names of groups; all when empty.
+    only : names of groups; all but those with models of their own when empty.
     settings : how thoroughly to measure.
     say : told which group is being measured.
 
@@ -82,7 +87,7 @@ def bench(
     UsageError
         If a group is unknown, or an input is neither a constant nor a sine.
     """
-    names = tuple(only) or tuple(GROUPS)
+    names = tuple(only) or tuple(name for name in GROUPS if name not in OWN)
     for name in names:
         if name not in GROUPS:
             raise UsageError(f"no group {quote(name)}", "--only", remedy=nearest(name, GROUPS))
@@ -92,7 +97,7 @@ def bench(
         say(name)
         parts.append(GROUPS[name](problem, settings))
     return Report(
-        model.name,
+        model.name if set(names) - OWN else ", ".join(names),
         machine(peer.package for peer in PEERS),
         tuple(row for part in parts for row in part.rows),
         tuple(line for part in parts for line in part.left_out),

@@ -12,6 +12,7 @@ from piezo_sym import derive, simulate, sine, verify
 from piezo_sym.errors import NetworkError, SpecError
 from piezo_sym.modules import module_of
 from piezo_sym.proofs import Verdict
+from piezo_sym.run.engine.batch import Batch
 from piezo_sym.spec.load import parse
 from piezo_sym.verification import process
 
@@ -251,6 +252,35 @@ def test_ten_thousand_stops_run(steps):
         near = steps.get("rtol", 1e-10)
         assert run.z.values[n] == pytest.approx(sign * limits / 1e3, rel=near)
     balanced(run)
+
+
+def test_many_that_yield_in_one_step_are_the_stop_operator():
+    """More than are computed side by side, each at a place of its own, and a turn in each step."""
+    limits = np.linspace(0.5, 40.0, 150)
+    t, v = np.arange(6) * 0.05, np.array([0.4, -0.5, 0.7, -0.9, 0.3, -0.2])
+    turns = t[:-1] - v[:-1] * 0.05 / np.diff(v)
+    times = np.union1d(t, turns)
+    gone = np.diff(times) * (np.interp(times[1:], t, v) + np.interp(times[:-1], t, v)) / 2
+    given = {"stop_count": 150, "F_c": limits.tolist(), "k": 3000.0}
+    run = led(t, v, step=0.05, order=6, times=t, parameters=given)
+    for lane, F_c in enumerate(limits):
+        wanted = stop_operator(np.cumsum([0.0, *gone]), F_c / 3000.0)[np.isin(times, t)]
+        assert np.abs(run.z.values[:, lane] - wanted).max() <= 1e-12
+    assert np.abs(run.energy_residual).max() <= 1e-12 * np.ptp(run.energy.values)
+
+
+def test_the_survey_of_scales_stays_within_limits(monkeypatch):
+    """It crept from one yield to the next, which took most of a run's time, and then beyond."""
+    largest = []
+    monkeypatch.setattr(
+        Batch,
+        "survey",
+        lambda batch, h, of=Batch.survey: (of(batch, h), largest.append(batch.largest.copy())),
+    )
+    limits = np.linspace(1.0, 40.0, 300) / 300
+    given = {"stop_count": 300, "k": 10.0, "F_c": limits.tolist()}
+    simulate(model("block"), duration=1.2, inputs={"F": sine(40.0, 1.7)}, parameters=given, times=2)
+    assert np.all(largest[0][0, 2:] <= limits / 10.0 * (1 + 1e-12))
 
 
 @cache

@@ -52,48 +52,47 @@ static inline real further(real a, real b)
     return chosen(first, a, b);
 }
 
-#if defined(PATHS)
-/* Whether state k is an inner state of a path functional. */
-static int MODEL(is_inner)(const MODEL(block) *m, long k)
-{
-    for (long n = 0; n < PATHS; ++n) {
-        const int *path = MODEL(path)[n];
-        const long first = m->first[path[INNER]];
-        if (k >= first && k < first + (path[BANK] < 0 ? 1 : m->lanes[path[BANK]]))
-            return 1;
-    }
-    return 0;
-}
-#endif
-
 /*
- * The misfits of a step times `gamma`, in some_rate; and relative to the change of each rate over
- * the step, in some_share.
+ * The misfits of some states' rates in a step times `gamma`, in some_rate; and relative to the change of
+ * each rate over the step, in some_share. Where the part `series` is 0, their series says nothing.
  */
-static void MODEL(misfits)(const MODEL(batch) *b, real gamma)
+static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long first, long end)
 {
-    const MODEL(block) *m = &b->m;
-    for (long k = 0; k < m->n; ++k) {
-        real low = -b->rate[k], high = -b->end_rate[k], mean = zero, last = zero, most = 1e-300 + zero;
+    const long n = b->m.n;
+    const real *const rates = b->m.rates, *const begins = b->rate, *const ends = b->end_rate;
+    real *restrict const shares = b->some_share, *restrict const found = b->some_rate;
+#pragma omp simd
+    for (long k = first; k < end; ++k) {
+        real low = -begins[k], high = -ends[k], mean = zero, last = zero, most = 1e-300 + zero;
         for (long j = 0; j < STAGES; ++j) {
-            const real rate = m->rates[j * m->n + k];
+            const real rate = rates[j * n + k];
             low += stage_start[j] * rate;
             high += stage_end[j] * rate;
             last += stage_last[j] * rate;
             mean += stage_weight[j] * rate;
         }
         for (long j = 0; j < STAGES; ++j)
-            most = largest_of(size_of(m->rates[j * m->n + k] - mean), most);
+            most = largest_of(size_of(rates[j * n + k] - mean), most);
         const real smooth = least(size_of(last) / most, wide(1.0));
-        real next = STAGES > 2 ? (real)(last * LIKE_THE_LAST(smooth)) : (real)zero;
-#if defined(PATHS)
-        if (MODEL(is_inner)(m, k)) /* exact on the path of its coordinate */
-            next = chosen(m->yield[HOW_OFTEN] > 0.0, zero, next);
-#endif
+        const real next = STAGES > 2 ? (real)(series * last * LIKE_THE_LAST(smooth)) : (real)zero;
         const real misfit = further(further(low, high), next);
-        b->some_share[k] = least(size_of(misfit) / most, wide(1.0));
-        b->some_rate[k] = gamma * misfit;
+        shares[k] = least(size_of(misfit) / most, wide(1.0));
+        found[k] = gamma * misfit;
     }
+}
+
+/* The same for all states. Those of path functionals are exact on the paths of their coordinates. */
+static void MODEL(all_misfits)(const MODEL(batch) *b, real gamma)
+{
+    MODEL(misfits)(b, gamma, wide(1.0), 0, b->m.n);
+#if defined(PATHS)
+    const real series = chosen(b->m.yield[HOW_OFTEN] > 0.0, zero, wide(1.0));
+    for (long n = 0; n < PATHS; ++n) {
+        const int *path = MODEL(path)[n];
+        const long first = b->m.first[path[INNER]], lanes = path[BANK] < 0 ? 1 : b->m.lanes[path[BANK]];
+        MODEL(misfits)(b, gamma, series, first, first + lanes);
+    }
+#endif
 }
 
 /*
@@ -107,7 +106,7 @@ static real MODEL(error)(const MODEL(batch) *b, real h)
     const MODEL(block) *m = &b->m;
     const real gamma = h * filter;
     real *const once = m->gap, *const twice = m->prior; /* no longer needed by Newton's method */
-    MODEL(misfits)(b, gamma);
+    MODEL(all_misfits)(b, gamma);
     memcpy(once, b->some_rate, (size_t)m->n * sizeof(real));
     MODEL(solve_real)(m, gamma, m->slope, m->real_factor, once);
     memcpy(twice, once, (size_t)m->n * sizeof(real));

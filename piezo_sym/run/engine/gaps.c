@@ -97,14 +97,17 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
-    for (long k = 0; k < m->n; ++k) {
+    const long n = m->n;
+    real *const gap = m->gap;
+#pragma omp simd
+    for (long k = 0; k < n; ++k) {
         real one[STAGES];
         for (long i = 0; i < STAGES; ++i) {
             one[i] = zero;
             for (long j = 0; j < STAGES; ++j)
-                one[i] += matrix[i][j] * m->gap[j * m->n + k];
+                one[i] += matrix[i][j] * gap[j * n + k];
         }
         for (long i = 0; i < STAGES; ++i)
-            m->gap[i * m->n + k] = one[i];
+            gap[i * n + k] = one[i];
     }
 }

@@ -48,7 +48,8 @@ static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c,
     const real *restrict const k = parameter + STIFFNESS * lanes;
     const real *restrict const r = parameter + LIMIT * lanes;
     const real side = chosen(c->rises, wide(1.0), wide(-1.0)), none = wide(-1.0);
-    const real largest = c->largest, least = c->least, per = 1.0 / c->h, far = chosen(c->turns, none, wide(PUT_THERE));
+    const real largest = c->largest, least = c->least, per = 1.0 / c->h;
+    const real far = chosen(c->turns, none, wide(PUT_THERE));
     for (long i = 0; i < STAGES; ++i) {
         real *restrict const effort = given + i * m->given + EFFORT * lanes;
         real *restrict const slip = given + i * m->given + SLIP * lanes;
