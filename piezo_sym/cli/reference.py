@@ -1,7 +1,5 @@
 """``piezo-sym kinds``, ``functions``, ``units``, ``schema``: what a spec may say, with examples."""
 
-from __future__ import annotations
-
 import json
 import re
 from textwrap import wrap

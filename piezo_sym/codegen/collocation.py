@@ -12,8 +12,6 @@ that they are given, so that what Newton's method sees is smooth; the switching 
 which branches these should be.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import final
 

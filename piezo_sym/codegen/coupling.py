@@ -7,8 +7,6 @@ lanes act on each other through a sum, that sum is a shared unknown more: a bord
 O(r).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate

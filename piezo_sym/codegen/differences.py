@@ -4,8 +4,6 @@ Two of them lose digits otherwise: T - T_0 where T = T_0*exp(S/c_0) (`with_exces
 hold ``I*exp(z)`` and ``-I``, as a diode's law does (`sharp`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 

@@ -4,8 +4,6 @@ Input: the quantities of a system.  Output: `ModuleFunction` records, rows in th
 ports and processes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 
 from piezo_sym.algebra.lanes import Slot

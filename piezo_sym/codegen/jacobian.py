@@ -8,8 +8,6 @@ The derivative of one value by one state is a `_Slope`: `value`, in the lane tha
 lies between them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from heapq import heappop, heappush

@@ -5,8 +5,6 @@ can add up, the end of each bank's rows gets a name, defined once at the head of
 then grows with the number of banks, not with its square.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field

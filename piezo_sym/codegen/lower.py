@@ -4,8 +4,6 @@ Input: an `IPHS` and the verdict on it.  Output: a `Program`.  Terms stand in th
 states, then the processes, then the inputs; laws keep the spelling of the spec.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -8,8 +8,6 @@ of the slip and heat, exact along the step (run/engine/stop.c), and in which par
 with the coordinate.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import final

@@ -3,8 +3,6 @@
 Input: a `LaneMatrix` and the names of what it is multiplied by.  Output: terms, or sums to define.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 

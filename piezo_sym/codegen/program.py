@@ -6,8 +6,6 @@ and functions whose rows are expressions in them.  A quantity has one value, or 
 bank; a sum over lanes is always a quantity of its own.  There is no algebra beyond this point.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import final

@@ -4,8 +4,6 @@ Input: an `IPHS`.  Output: `Quantities`, in an order in which each can be comput
 ones, and the products of Definition 1 as expressions in them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -6,8 +6,6 @@ zero, for <= and >=), else 0.  Every kink is such a choice: ``abs(z)`` is ``z if
 dead zone ``z - w if z > w else (z + w if z < -w else 0)``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import final

@@ -14,15 +14,7 @@ from itertools import islice
 from math import prod
 from typing import final
 
-from piezo_sym.expressions.calculus import (
-    add,
-    compared,
-    derivative,
-    div,
-    inserted,
-    mul,
-    neg,
-)
+from piezo_sym.expressions.calculus import add, compared, derivative, div, inserted, mul, neg
 from piezo_sym.expressions.integrals import MAX_PARTS, NoFormError, by_rules, divided, slope_of
 from piezo_sym.expressions.reflection import reflected
 from piezo_sym.expressions.tidying import collected, settled, tidied

@@ -4,8 +4,6 @@ Input: a tree and exact numbers.  Output: a `Fraction`, or a ball of FLINT's (``
 arithmetic is rigorous.  A witness is shown only after its law has been evaluated here.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass

@@ -9,15 +9,7 @@ from fractions import Fraction
 from functools import reduce
 from math import comb
 
-from piezo_sym.expressions.calculus import (
-    add,
-    derivative,
-    div,
-    mul,
-    neg,
-    power,
-    rule,
-)
+from piezo_sym.expressions.calculus import add, derivative, div, mul, neg, power, rule
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ONE,

@@ -4,23 +4,9 @@ Input: a law and its letter.  Output: a tree in which functions of odd and even 
 argument as in the law itself, so that W(z) + W(-z) cancels by its form where it can.
 """
 
-from __future__ import annotations
-
 from piezo_sym.expressions.calculus import add, div, mul, neg, power
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.expressions.tree import (
-    Add,
-    Call,
-    Cmp,
-    Div,
-    Expr,
-    If,
-    Mul,
-    Neg,
-    Pow,
-    Sym,
-    knots,
-)
+from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Pow, Sym, knots
 
 
 def reflected(law: Expr, letter: str) -> Expr:

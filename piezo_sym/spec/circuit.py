@@ -4,8 +4,6 @@ Input: a `Model`.  Output: a `Circuit`, the flat list the later stages work on, 
 co-state, law output, ratio and temperature has the one name it keeps in mathematics, text and code.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -78,7 +76,7 @@ class Circuit:
             if isinstance(placed.port, kinds):
                 yield placed, placed.port
 
-    def replaced(self, placed: Placed, port: Port) -> Circuit:
+    def replaced(self, placed: Placed, port: Port) -> "Circuit":
         """Return the circuit with one port replaced."""
         changed = tuple(replace(p, port=port) if p is placed else p for p in self.ports)
         return replace(self, ports=changed)

@@ -8,8 +8,6 @@ between ``tip`` and ``creep.inside``, one for each lane.  A node that no element
 names is a cell's own.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field

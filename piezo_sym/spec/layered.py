@@ -5,8 +5,6 @@ forces and in parallel for the supply, and conduct heat to their neighbours.  Th
 the stiffness, damping, capacitance, hysterons and heat capacity of `piezo_stack`, for every n.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any

@@ -4,8 +4,6 @@ Input: pairs.  Output: a mapping that cannot change, is hashable, and equals ano
 order is the same too (states follow the order of elements).
 """
 
-from __future__ import annotations
-
 from collections.abc import ItemsView, Iterator, Mapping
 from typing import Any, Generic, TypeVar, final, get_args
 

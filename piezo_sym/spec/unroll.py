@@ -4,8 +4,6 @@ Input: a `Model` and a size for each bank.  Output: a `Model` without banks, to 
 other; it shows explicit matrices, and checks the derivation that keeps sizes symbolic.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 

@@ -5,8 +5,6 @@ is proved, and texts with other values.  Nothing here needs the spec's types, so
 an edit of a value without loading them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

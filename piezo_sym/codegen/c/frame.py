@@ -4,8 +4,6 @@ Input: a `Program` and the arrays that functions take.  Output: the text of func
 functions are those of a module, `real` ones those of a step: for one run, or for vectors of many.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import final

@@ -4,8 +4,6 @@ Input: a `Program`.  Output: the text of ``<model>.h``.  Texts of a spec stand i
 changed so that they cannot end one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
 

@@ -3,8 +3,6 @@
 Input: stages of a function.  Output: lines of C99.  Only what a function uses is defined in it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Input: a `Program`.  Output: the text of ``<model>.c``.  Its loops over lanes ar
 vectorised; rows of a bank are written in the loop that also adds up the sums, where they can be.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import final
 

@@ -4,8 +4,6 @@ Input: the names of a program.  Output: what C calls each of them: the name itse
 underscore.  The header is used together with others, and in C++: their macros and keywords count.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 from piezo_sym.codegen.program import Names, Program

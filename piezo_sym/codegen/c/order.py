@@ -6,8 +6,6 @@ stage: it computes each lane's quantities, adds up the sums and writes the lane'
 nothing has to be stored a lane; a quantity that a later loop needs again is computed again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import final

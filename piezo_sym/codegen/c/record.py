@@ -4,8 +4,6 @@ Input: a `Program` and its names in C.  Output: the record, and the functions by
 parameters of their runs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from piezo_sym.codegen.c.head import comment

@@ -5,8 +5,6 @@ integrands, a stage, the slopes, and the tables by which equations are eliminate
 drives them.  Nothing is compared there: branches are given, so the text holds for vectors too.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -3,8 +3,6 @@
 Input: a `Program`, and what a step books.  Output: the text of ``<model>_step.h``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from piezo_sym.codegen.c.head import has_defaults, opening, pointer_name, wrapped

@@ -5,8 +5,6 @@ are products, kinks are calls of ``pick``, and a quotient of numbers stays one: 
 once, as in NumPy.  The functions that a text calls and <math.h> lacks are in `helpers`.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

@@ -4,8 +4,6 @@ Input: a `Program`.  Output: text.  It has no date, no path and no host, so that
 when the spec or the generator does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from piezo_sym.codegen.program import Described, Program, described

@@ -5,8 +5,6 @@ arrays of shape (n, *batch), banks spread.  Words of a spec reach the text only 
 identifiers or inside string literals.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import accumulate

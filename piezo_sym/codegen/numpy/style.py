@@ -4,8 +4,6 @@ Input: a tree.  Output: one line of NumPy.  A dead zone prints as ``z - clip(z, 
 over an array instead of five.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final

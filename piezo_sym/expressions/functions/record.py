@@ -6,8 +6,6 @@ real numbers: a clause of comparisons, with ``|`` between them, of which one hol
 the function's domain alone has as first comparison that the argument is outside it.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Components of a spec: what they name exists, here or in their models, and units agree."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

@@ -4,8 +4,6 @@ A capacitance that depends on a temperature is no energy of its charge alone: wi
 entropy it is one of two states, which a `storage` says.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from piezo_sym.errors import SpecError, quote

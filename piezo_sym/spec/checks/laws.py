@@ -1,7 +1,5 @@
 """References and laws of a spec: what they name exists, and the text is of the law language."""
 
-from __future__ import annotations
-
 from collections import ChainMap
 from collections.abc import Collection, Mapping
 

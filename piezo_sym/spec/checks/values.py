@@ -4,8 +4,6 @@ Parameters and the inputs' defaults are what their doubles are, exactly; initial
 temperatures may be balls.  A condition that these do not decide refuses nothing here.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction

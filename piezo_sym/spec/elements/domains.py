@@ -5,8 +5,6 @@ e_b, and its through variable flows from a to b inside the element.  All else th
 domain (messages, units, names of quantities) is read from its row.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import Enum
 from typing import final
@@ -20,7 +18,7 @@ class PowerVariable(Enum):
     THROUGH = "through"
 
     @property
-    def other(self) -> PowerVariable:
+    def other(self) -> "PowerVariable":
         """The conjugate variable."""
         return PowerVariable.THROUGH if self is PowerVariable.ACROSS else PowerVariable.ACROSS
 

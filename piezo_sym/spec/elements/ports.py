@@ -4,8 +4,6 @@ Input: nothing; these are the types.  Output: frozen records that `network` conn
 reads.  An element states here, once, its law; it knows nothing of matrices.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar, final
 
