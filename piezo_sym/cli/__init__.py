@@ -24,9 +24,9 @@ from piezo_sym.errors import PiezoError, one_line
 #: The exception typer raises for a wrong command line; its module differs between versions.
 CommandError: Any = typer.BadParameter.__mro__[2]
 
-#: Exit code of a command that the user stopped (Ctrl-C), as shells have it.
+#: Exit code of a command that the user stopped (Ctrl-C), as in shells.
 STOPPED = 130
-#: Exit code of a command whose reader has closed the pipe; typer's and rich's own.
+#: Exit code after the reader has closed the pipe, as in typer and rich.
 CLOSED = 1
 
 app = typer.Typer(
@@ -60,11 +60,11 @@ def _options(
         ),
     ] = False,
 ) -> None:
-    """Do nothing: the callback of the option has run before any command is looked up."""
+    """Do nothing: the callback of the option runs before any command is looked up."""
 
 
 def main() -> None:
-    """Run the command line, and leave with its exit code; a batch queue stops it like a user."""
+    """Run the command line and exit with its code; SIGTERM stops it as Ctrl-C does."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(run(sys.argv[1:]))
 
@@ -82,8 +82,8 @@ def run(words: list[str]) -> int:
         command = f" {error.ctx.info_name}" if error.ctx and error.ctx.parent else ""
         python = "; sweeps are made in Python: help(piezo_sym.sweep)" * ("'sweep'" in message)
         return _failed(f"{message}{python}; see `piezo-sym{command} --help`", 2)
-    except BrokenPipeError:  # who reads has seen enough; what is written lies on the disk
-        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - so that the exit has no more to say
+    except BrokenPipeError:  # the reader has closed the pipe; files are written by now
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - so that the flush at exit is silent
         return CLOSED
     except OSError as error:
         if error.filename is not None:

@@ -1,7 +1,8 @@
 """Numbers on the command line, in SI or in units of their own: ``L=1.2e-3``, ``L=1.2mH``.
 
 Input: what a user typed, and the spec that declares the units of its parameters and inputs.
-Output: numbers in coherent SI, and a line for each that had no unit where the spec's is not SI.
+Output: numbers in coherent SI, and a line for each number without unit whose declared unit is not
+SI.
 """
 
 import re
@@ -13,7 +14,7 @@ from piezo_sym.cli.words import number, numbers, signal
 from piezo_sym.errors import SpecError, UsageError, quote
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-#: A number and its unit; the e of 1e3 is none.
+#: A number and its unit; the e of 1e3 is no unit.
 IN_UNIT = re.compile(rf"\s*({NUMBER})\s*(?![eE][-+]?\d)([^\W\d_].*)")
 
 
@@ -23,7 +24,7 @@ class Units:
 
     Attributes
     ----------
-    assumed : a line for each number that was read in SI, though its declared unit is another.
+    assumed : a line for each number that was read in SI, although its declared unit is another.
     """
 
     def __init__(self, spec: str) -> None:
@@ -32,12 +33,10 @@ class Units:
 
     def numbers(self, text: str, where: str) -> float | list[float]:
         """Return a number, or a list of them for the lanes of a bank, each in its unit or SI."""
-        parts = text.split(",")
-        if not any(IN_UNIT.fullmatch(part) for part in parts):
-            self._assume(where)
-            return numbers(text, where)
-        found = [self._converted(part, where) for part in parts]
-        return found[0] if len(found) == 1 else found
+        if any(map(IN_UNIT.fullmatch, text.split(","))):
+            return numbers(text, where, self._converted)
+        self._assume(where)
+        return numbers(text, where)
 
     def signal(self, text: str, where: str) -> Any:
         """Return a signal, or a number in its unit or SI."""
@@ -49,7 +48,7 @@ class Units:
 
     @cached_property
     def _declared(self) -> dict[str, str]:
-        """The unit of each parameter and input, where the spec says one."""
+        """The unit of each parameter and input that has one in the spec."""
         from piezo_sym.spec.source import data, find, read
 
         with about(self._spec, SpecError):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from piezo_sym.cli.output import about, said_at_the_end
+from piezo_sym.cli.output import about, printed_at_the_end
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.files import path_text
 
@@ -53,7 +53,7 @@ def generate(
         return
     from piezo_sym.build import generate as write
 
-    with said_at_the_end() as lines:
+    with printed_at_the_end() as lines:
         for spec, model in zip(names or [model.name for model in models], models, strict=True):
             with about(spec):
                 lines += map(str, write(model, out, allow_unproved=allow_unproved))
@@ -67,10 +67,10 @@ def _check(
     options = ["--out", str(out)] if out != Path("generated") else []
     options += ["--allow-unproved"] if allow_unproved else []
     command = " ".join(["piezo-sym generate", *specs, *options])
-    found = drift(models, out, complete=complete, allow_unproved=allow_unproved)
-    for fault in found:
+    faults = drift(models, out, complete=complete, allow_unproved=allow_unproved)
+    for fault in faults:
         typer.echo(f"{path_text(fault.path)} {fault.fault}; {fault.remedy(command)}")
         if fault.diff:
             typer.echo(fault.diff)
-    raise_if_drifted(found, command)
+    raise_if_drifted(faults, command)
     typer.echo(f"{len(models)} {'model' if len(models) == 1 else 'models'} up to date in {out}")

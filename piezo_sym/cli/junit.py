@@ -1,7 +1,7 @@
 """Verdicts as JUnit XML, which continuous integration shows.
 
-Input: reports, and the verdicts of the second program.  Output: the text of the file: one suite per
-model with one case per property, and a second suite per model for the second program.
+Input: reports, and the verdicts of the second program.  Output: the text of the file: for each
+model a suite with one case per property, and another for the second program.
 """
 
 from __future__ import annotations
@@ -23,8 +23,7 @@ def junit_xml(
 ) -> str:
     """Return JUnit XML: REFUTED is a failure, OPEN an error, unless it is only information.
 
-    What a second program does not confirm is a failure in the suite ``<model>, rechecked``.
-
+    A row that the second program does not confirm is a failure in the suite ``<model>, rechecked``.
     A spec that could not be read is a suite of its own, with one error.
     """
     root = ET.Element("testsuites", name=f"piezo-sym {VERSION}")

@@ -1,4 +1,4 @@
-"""How commands print: one console, plain tables that also read well in a log."""
+"""The output of commands: one console, and plain tables that also read well in a log."""
 
 import warnings
 from collections.abc import Iterator
@@ -19,11 +19,11 @@ STYLES = {"PROVED": "green", "REFUTED": "bold red", "OPEN": "yellow"}
 
 @contextmanager
 def about(spec: str, *kinds: type[PiezoError]) -> Iterator[None]:
-    """Name the spec's file in every error from within that does not name it yet.
+    """Prefix each error raised inside with the name of the spec's file, unless it has it.
 
     Parameters
     ----------
-    kinds : the errors to name it in; all when left out.
+    kinds : the types of errors to prefix; all if none is given.
     """
     try:
         yield
@@ -36,9 +36,9 @@ def about(spec: str, *kinds: type[PiezoError]) -> Iterator[None]:
 
 @contextmanager
 def warnings_as_lines() -> Iterator[None]:
-    """Print what runs from within warn of as one line on stderr.
+    """Print warnings of runs as one line each on stderr.
 
-    A call that is refused has one line, its error: of modules it says nothing.
+    A call that is refused prints its error only, no warnings about modules.
     """
     from piezo_sym.modules import ModuleWarning
     from piezo_sym.run.engine import EngineWarning
@@ -69,37 +69,34 @@ def warnings_as_lines() -> Iterator[None]:
 
 
 @contextmanager
-def said_at_the_end() -> Iterator[list[str]]:
-    """Print lines once all is done, or once it fails: a closed pipe stops nothing half-way."""
+def printed_at_the_end() -> Iterator[list[str]]:
+    """Print lines at the end, also after an error, so that a closed pipe interrupts no work."""
     lines: list[str] = []
     try:
         yield lines
-    except BaseException:  # which says more than that these lines cannot be printed
+    except BaseException:  # it matters more than lines that cannot be printed
         with suppress(OSError):
             typer.echo("".join(f"{line}\n" for line in lines), nl=False)
         raise
     typer.echo("".join(f"{line}\n" for line in lines), nl=False)
 
 
-#: Columns of a log, which wraps nothing.
+#: Width of a console that wraps nothing.
 ENDLESS = 1_000_000
 
 
 def console() -> Console:
     """Return the console for results; in a log or a pipe each row is one line."""
-    found = Console()
-    return found if found.is_terminal else Console(width=ENDLESS)
+    terminal = Console()
+    return terminal if terminal.is_terminal else Console(width=ENDLESS)
 
 
 def row(table: Table, *cells: str | Text) -> None:
-    """Add a row whose cells are text and nothing else, whatever a spec has put into them."""
+    """Add a row of plain text: markup in the texts of a spec has no effect."""
     table.add_row(*(cell if isinstance(cell, Text) else Text(cell) for cell in cells))
 
 
 def table(title: str, *columns: str) -> Table:
     """Return an empty table with a title and named columns."""
-    headed = Text(title, style="bold", no_wrap=True, overflow="ignore")
-    made = Table(title=headed, title_justify="left", box=box.SIMPLE_HEAD)
-    for column in columns:
-        made.add_column(column)
-    return made
+    heading = Text(title, style="bold", no_wrap=True, overflow="ignore")
+    return Table(*columns, title=heading, title_justify="left", box=box.SIMPLE_HEAD)

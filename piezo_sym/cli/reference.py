@@ -10,7 +10,7 @@ import typer
 from piezo_sym.cli.output import console, row, table
 
 WIDTH = 100
-#: Where the numbers of equations and assumptions are from.
+#: The source of the numbers of equations and assumptions.
 PAPER = "Numbered equations and assumptions: Caballeria, Ramirez, Le Gorrec (2021)."
 NUMBERED = re.compile(r"\beqs?\. \(|Assumption")
 OPERATORS = (
@@ -43,7 +43,7 @@ def kinds(
 
 
 def _meant(kind: str) -> str:
-    """Return how what is no kind is written, or the kind with a name like it."""
+    """Return what to write instead of an unknown kind: another element, or a similar name."""
     if kind.replace("_", "") in {"endstop", "contact"}:
         return 'write a spring with force = "k_c*max(q - gap, 0)"'
     from piezo_sym.errors import nearest

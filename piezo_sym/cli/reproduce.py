@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from piezo_sym.cli.output import said_at_the_end, warnings_as_lines
+from piezo_sym.cli.output import printed_at_the_end, warnings_as_lines
 from piezo_sym.progress import tracked
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def _write(module: ModuleType, out: Path) -> None:
 
     jobs = [(figure, value) for figure in FIGURES for value in figure.values]
     done: dict[PaperFigure, list[Any]] = {figure: [] for figure in FIGURES}
-    with said_at_the_end() as lines:
+    with printed_at_the_end() as lines:
         for figure, value in tracked(jobs, "curves"):
             done[figure].append(figure.curve(module, value))
             if len(done[figure]) < len(figure.values):

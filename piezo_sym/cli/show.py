@@ -56,7 +56,7 @@ def _banks(model: Model) -> Iterator[str]:
 
 
 def _elements(model: Model) -> None:
-    """Print elements, inputs and parameters with values in SI, and what holds if not given."""
+    """Print elements, inputs and parameters, with values in SI and defaults."""
     from piezo_sym.spec.flatten import inputs_of
 
     made = table("Elements", "name", "kind", "where", "laws and values (SI)", "state at t = 0")
@@ -81,17 +81,17 @@ def _elements(model: Model) -> None:
 
 
 def _where(element: Element) -> str:
-    """Return the nodes of an element, and what else it names."""
+    """Return the nodes, bodies and inputs that an element names."""
     pairs = [*element, *((name, s.between) for name, s in getattr(element, "states", {}).items())]
     nodes = [(field, " - ".join(value)) for field, value in pairs if isinstance(value, tuple)]
-    found = [text if field == "between" else f"{field} {text}" for field, text in nodes]
-    found += [getattr(element, "at", "")] if hasattr(element, "at") else []
+    parts = [text if field == "between" else f"{field} {text}" for field, text in nodes]
+    parts += [element.at] if hasattr(element, "at") else []
     named = (row for row in element.named("thermal_mass", "input") if row[0] != "between")
-    return ", ".join((*found, *(f"{field} {name}" for field, name in named)))
+    return ", ".join((*parts, *(f"{field} {name}" for field, name in named)))
 
 
 def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
-    """Yield each law, and its value where parameters alone decide it."""
+    """Yield each law, and its value if it depends on parameters alone."""
     from piezo_sym.expressions.exact_eval import evaluate
     from piezo_sym.expressions.tree import Num, names
 
@@ -101,7 +101,7 @@ def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
         text = f"{law.field} = {law.text}"
         plain = {word: value for word, value in used.items() if isinstance(value, float)}
         if len(plain) == len(used) and not isinstance(law.tree, Num):
-            with suppress(ArithmeticError, ValueError):  # no value: the proofs say so
+            with suppress(ArithmeticError, ValueError):  # it has no value, which proofs report
                 text += f" = {evaluate(law.tree, plain):g} {law.mark.unit}"
         yield text
 
@@ -134,7 +134,7 @@ def _equations(iphs: IPHS) -> Iterator[str]:
 
 
 def _joined(iphs: IPHS) -> Iterator[str]:
-    """Yield what was joined: each state, and the co-state and energy of each store in it."""
+    """Yield the joined stores: each state, and the co-state and energy of each store in it."""
     from piezo_sym.expressions.calculus import add, mul
     from piezo_sym.expressions.text import spell
     from piezo_sym.expressions.tree import Sym
@@ -151,7 +151,7 @@ def _joined(iphs: IPHS) -> Iterator[str]:
 
 
 def _domain(iphs: IPHS) -> Iterator[str]:
-    """Yield the conditions that all proofs assume; an implied one with the law that needs it."""
+    """Yield the conditions of the domain; those that kinds imply with their place."""
     from piezo_sym.spec.tables import condition_text, conditions
 
     yield "\nDomain"

@@ -1,4 +1,4 @@
-"""``piezo-sym simulate SPEC``: run a model, print where it ends, keep the result."""
+"""``piezo-sym simulate SPEC``: run a model, print the final values, keep the result."""
 
 from __future__ import annotations
 
@@ -88,8 +88,8 @@ def simulate(
     _check_ending(out, events)
     units = Units(spec)
     signals = dict(pairs(inputs or (), "--input", units.signal))
-    when = {"duration": duration, "t0": t0, "times": times, "stop": stop}
-    how = {"rtol": rtol, "step": step, "order": order, "method": method, "outputs": outputs}
+    times_options = {"duration": duration, "t0": t0, "times": times, "stop": stop}
+    step_options = {"rtol": rtol, "step": step, "order": order, "method": method}
     result = _run(
         spec,
         out,
@@ -98,8 +98,9 @@ def simulate(
         initial=_start(continued, dict(pairs(initial or (), "--initial", numbers))),
         events=dict(pairs(events or (), "--event", lambda text, _: text)),
         dissipative_start=dissipative_start,
-        **when,
-        **how,
+        outputs=outputs if outputs in (None, "all") else outputs.split(","),
+        **times_options,
+        **step_options,
     )
     _report(result, [*units.assumed, *_assumed(signals)], out)
 
@@ -107,8 +108,6 @@ def simulate(
 def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
     from piezo_sym.api import simulate as run
 
-    asked = options["outputs"]
-    options["outputs"] = asked if asked in (None, "all") else asked.split(",")
     of_spec = about(spec, SpecError, NetworkError, ProofError)
     if _is_store(out):
         options["store"] = out
@@ -122,14 +121,14 @@ def _is_store(out: Path | None) -> bool:
 
 
 def _assumed(signals: Mapping[str, Any]) -> Iterator[str]:
-    """Yield what was taken of files that say no units."""
+    """Yield a line for each file of samples that says no units."""
     for name, value in signals.items():
         if assumed := getattr(value, "assumed", ""):
             yield f"{name}: its file names no units; read {assumed}"
 
 
 def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) -> None:
-    """Write a result, and then print it: a closed pipe is no reason to lose it."""
+    """Write a result, then print it, so that a closed pipe does not lose it."""
     if out is not None and not _is_store(out):
         _write(result, out)
     _print(result)
@@ -175,7 +174,7 @@ def _check_ending(out: Path | None, events: list[str] | None) -> None:
 
 @contextmanager
 def keeping(out: Path | None) -> Iterator[None]:
-    """Write what a run has reached that stops from within, and say so."""
+    """Write the partial result of a run that stops inside, and say so."""
     try:
         yield
     except (RunError, KeyboardInterrupt) as stopped:
@@ -196,7 +195,7 @@ def _print(result: xarray.Dataset) -> None:
     columns = table(f"{result.attrs['model']} at t = {end:.6g} s", "", "value", "unit", "")
     for name, variable in result.data_vars.items():
         values = variable.values[-1] if "time" in variable.dims else variable.values
-        last = values.reshape(-1)  # of an event, at its hits
+        last = values.reshape(-1)  # for an event, the values at its hits
         if not last.size:
             continue
         value = ", ".join(f"{v:.6g}" for v in last[:4])
@@ -220,9 +219,9 @@ def columns(result: xarray.Dataset) -> Any:
 
     from piezo_sym.run.samples import header_of
 
-    made = {header_of("time", "s"): result.time.to_series()}
-    for name, one in result.data_vars.items():
-        frame, unit = one.to_pandas(), str(one.attrs["units"])
-        lanes = {name: frame} if one.ndim == 1 else frame.add_prefix(f"{name}_")
-        made |= {header_of(lane, unit): values for lane, values in lanes.items()}
-    return pd.DataFrame(made)
+    series = {header_of("time", "s"): result.time.to_series()}
+    for name, variable in result.data_vars.items():
+        frame, unit = variable.to_pandas(), str(variable.attrs["units"])
+        lanes = {name: frame} if variable.ndim == 1 else frame.add_prefix(f"{name}_")
+        series |= {header_of(lane, unit): values for lane, values in lanes.items()}
+    return pd.DataFrame(series)

@@ -99,7 +99,7 @@ def _rechecked(spec: str, report: Report) -> Recheck:
 
 
 def _rows(report: Report, second: Recheck | None) -> list[dict[str, object]]:
-    """Return the rows as plain data, each with the second program's verdict if it ran."""
+    """Return the rows as plain data, with the second program's verdict if it has run."""
     rows = []
     for row in report.rows:
         said = {"recheck": second.rows.get((row.id, row.element))} if second else {}

@@ -17,7 +17,7 @@ CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)\)")
 def pairs(
     texts: Iterable[str], option: str, read: Callable[[str, str], Any]
 ) -> Iterable[tuple[str, Any]]:
-    """Yield the name and value of each ``NAME=VALUE``; `read` converts a text, given its place."""
+    """Yield the name and value of each ``NAME=VALUE``; `read` converts (text, place) to a value."""
     seen: set[str] = set()
     for given in texts:
         name, equals, value = given.partition("=")
@@ -36,7 +36,7 @@ def signal(text: str, where: str) -> Any:
     Nothing is evaluated.
     """
     if text.startswith("@"):
-        return from_file(text[1:], where)
+        return samples(text[1:], where)
     call = CALL.fullmatch(text)
     if call is None:
         return number(text, where)
@@ -69,7 +69,7 @@ def spelled(name: str) -> str:
     return f"{name}({', '.join(words)})"
 
 
-def from_file(path: str, where: str) -> Any:
+def samples(path: str, where: str) -> Any:
     """Return the samples in a delimited text file: its one column, or that named like the input."""
     from piezo_sym.run.samples import column_headers, samples_from_csv
 
@@ -85,17 +85,19 @@ def from_file(path: str, where: str) -> Any:
     return samples_from_csv(path, name if name in columns[1:] else None)
 
 
-def numbers(text: str, where: str) -> float | list[float]:
-    """Return a number, or a list of them for the lanes of a bank."""
-    found = [number(part, where) for part in text.split(",")]
-    return found[0] if len(found) == 1 else found
-
-
 def number(text: str, where: str) -> float:
     """Return a number."""
     try:
-        value = float(text.replace("_", "x"))
+        value = float(text.replace("_", "x"))  # float() would skip underscores
     except ValueError:
         expected = "such as 0.5 or 1e-3, in SI"
         raise UsageError(f"{quote(text)} is no number", where, expected) from None
     return int(value) if value.is_integer() and text.strip().isdigit() else value
+
+
+def numbers(
+    text: str, where: str, read: Callable[[str, str], float] = number
+) -> float | list[float]:
+    """Return a number, or a list of them for the lanes of a bank; `read` converts each."""
+    values = [read(part, where) for part in text.split(",")]
+    return values[0] if len(values) == 1 else values

@@ -6,10 +6,10 @@ weighted means over the step (STEPPING: energy-preserving Gauss collocation):
     Ebar_i = int_0^1 (l_i(tau)/b_i) dU/dx(X(tau)) dtau
     K_i    = J0 Ebar_i - sum_k b_k W_k(zbar_ki) + g u_i,   a body's row: heats/Tbar_i + exchanges
 
-A co-state that is affine in its state is its value at X(c_i); the others, and differences such as
-T - T_0 that would cancel, are given: `means` says what they are means of.  Laws take the branches
-that they are given, so that what Newton's method sees is smooth; the switching functions tell
-which branches these should be.
+The mean of a co-state that is affine in the state is its value at X(c_i).  The means of the others,
+and of differences such as T - T_0 that would cancel, are given to the stage; `means` are their
+integrands.  Branches of laws are given, too, so that Newton's method meets smooth functions; the
+signs of the switching functions tell which branches are right.
 """
 
 from dataclasses import dataclass, replace
@@ -18,10 +18,10 @@ from typing import final
 from piezo_sym.codegen.differences import sharp_quantity
 from piezo_sym.codegen.functions import exchanges_of, heats_of, productions_of, rates_of, supply_of
 from piezo_sym.codegen.jacobian import jacobian_of
-from piezo_sym.codegen.paths import Path, given_to, in_motion, paths_of
+from piezo_sym.codegen.paths import Path, paths_of, slope_quantities, stage_quantities
 from piezo_sym.codegen.program import Entry, Limit, Names, OutputRow, Quantity, needed
 from piezo_sym.codegen.quantities import COSTATES, Quantities, quantities_of
-from piezo_sym.codegen.switches import Switch, switched
+from piezo_sym.codegen.switches import Switch, switched_values
 from piezo_sym.expressions.calculus import compared, is_affine
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body, Storage
@@ -36,12 +36,12 @@ class Stage:
     ----------
     quantities : in an order in which they can be computed.
     rates : of each state.
-    booked : what the ledger takes: power of each port, heat and entropy production of each process,
-        entropy rate of each heat exchange.
+    booked : the rows of the ledger: power of each port, heat and entropy production of processes,
+        entropy rate of heat exchanges.
     switches : of the laws, in order.
-    limits : conditions of the domain that a state can leave.
+    limits : the conditions of the domain that depend on the state.
     taken : every name in use.
-    bends : what changes its sign where a function has a kink whose mean the stage is given.
+    bends : functions whose sign changes where an integrand of `means` has a kink.
     """
 
     quantities: tuple[Quantity, ...]
@@ -72,10 +72,10 @@ class Collocation:
     Attributes
     ----------
     means : the functions of the state whose weighted means a stage is given.
-    heated : the state whose row takes what a dissipative step loses, the first body's; -1 if there
-        is no body, or no store that could lose anything.
-    jumps : whether a law says that it is discontinuous.
-    paths : what a stage is given behind the means.
+    heated : the row of the entropy that takes the loss of a dissipative step, that of the first
+        body; -1 if there is no body, or no store that could lose energy.
+    jumps : whether a law is declared discontinuous.
+    paths : the path functionals, whose values a stage is given after the means.
     """
 
     means: tuple[Quantity, ...]
@@ -99,8 +99,8 @@ def collocation_of(iphs: IPHS) -> Collocation:
     elements = iphs.model.elements.values()
     return Collocation(
         means=tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means),
-        stage=_stage(given_to(q, paths), means),
-        slopes=_slopes(in_motion(q, paths), means),
+        stage=_stage(stage_quantities(q, paths), means),
+        slopes=_slopes(slope_quantities(q, paths), means),
         heated=_heated(q),
         jumps=any(getattr(element, "discontinuous", False) for element in elements),
         paths=paths,
@@ -118,25 +118,25 @@ def _stage(q: Quantities, means: tuple[Quantity, ...]) -> Stage:
     rates, new = rates_of(q), Names(q.taken)
     booked = (*supply_of(q), *heats_of(q), *productions_of(q), *exchanges_of(q))
     defined = tuple(item for item in q.defined if item not in means)
-    found = switched(defined, (*rates, *booked), q.lanes, new, means=means)
-    states = {state.name for state in q.states}  # the other conditions hold for a whole run
+    values = switched_values(defined, (*rates, *booked), q.lanes, new, means=means)
+    states = {state.name for state in q.states}  # other conditions are checked once per run
     limits = (m for m in q.limits if states & {*needed(q.defined, [m.margin])[1]})
     return Stage(
-        quantities=tuple(map(sharp_quantity, found.quantities)),
-        rates=found.rows[: len(rates)],
-        booked=found.rows[len(rates) :],
-        switches=found.switches,
+        quantities=tuple(map(sharp_quantity, values.quantities)),
+        rates=values.rows[: len(rates)],
+        booked=values.rows[len(rates) :],
+        switches=values.switches,
         limits=tuple(replace(limit, margin=compared(limit.margin)) for limit in limits),
         taken=frozenset(new.taken),
-        bends=found.bends,
+        bends=values.bends,
     )
 
 
 def _slopes(q: Quantities, means: tuple[Quantity, ...]) -> Slopes:
     new, given = Names(q.taken), {mean.name for mean in means}
-    found = switched(q.defined, rates_of(q), q.lanes, new, compared_names=given)
+    values = switched_values(q.defined, rates_of(q), q.lanes, new, compared_names=given)
     entries, derivatives = jacobian_of(
-        *(found.rows, q.states, found.quantities, found.lanes, new, q.temperatures)
+        *(values.rows, q.states, values.quantities, values.lanes, new, q.temperatures)
     )
-    quantities = tuple(map(sharp_quantity, (*found.quantities, *derivatives)))
-    return Slopes(quantities, entries, found.switches, frozenset(new.taken))
+    quantities = tuple(map(sharp_quantity, (*values.quantities, *derivatives)))
+    return Slopes(quantities, entries, values.switches, frozenset(new.taken))

@@ -1,10 +1,9 @@
-"""How the equations of a step hang together: lanes of banks, shared states, sums between lanes.
+"""The structure of the equations of a step: lanes of banks, shared states, sums over lanes.
 
-Input: a program and the slopes of its rates.  Output: a `StepCoupling`: where each slope stands in
-one array, and tables from which `run/engine` solves ``(1 - gamma J) d = r``.  The lanes of a bank
-are eliminated first, each by itself, and what is left are equations of the shared states.  Where
-lanes act on each other through a sum, that sum is a shared unknown more: a border.  A step costs
-O(r).
+Input: a program and the slopes of its rates.  Output: a `StepCoupling`: the place of each slope in
+one array, and tables by which `run/engine` solves ``(1 - gamma J) d = r``.  The lanes of a bank are
+eliminated first, each by itself, which leaves equations of the shared states.  A sum through which
+lanes act on each other is an additional shared unknown: a border.  A step costs O(r).
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -23,8 +22,8 @@ Place = tuple[int, int]
 
 @final
 @dataclass(frozen=True)
-class At:
-    """A slope and its place: after `shared` numbers, and for each bank after some rows of lanes."""
+class PlacedSlope:
+    """A slope and its place: after `shared` numbers, and some rows of lanes of each bank."""
 
     shared: int
     lanes: dict[str, int]
@@ -35,13 +34,13 @@ class At:
 @final
 @dataclass(frozen=True)
 class Bank:
-    """The lanes of a bank, as equations.
+    """The equations of the lanes of a bank.
 
     Attributes
     ----------
-    states : the states that each lane has, by their place among all.
-    columns : shared unknowns that occur in a lane's equations.
-    rows : shared equations in which a lane's states occur.
+    states : the states of a lane, by their place among all states.
+    columns : the shared unknowns in a lane's equations.
+    rows : the shared equations in which a lane's states occur.
     """
 
     name: str
@@ -53,18 +52,18 @@ class Bank:
 @final
 @dataclass(frozen=True)
 class Elimination:
-    """The order in which shared unknowns are eliminated, and where they fill in.
+    """The order in which shared unknowns are eliminated, and the fill-in.
 
-    A printed step holds it as tables of numbers, and no statement per entry, so that a network of
-    600 states has a short text.
+    A printed step has it as tables of numbers instead of a statement per entry, so that the text
+    stays short for a network of 600 states.
 
     Attributes
     ----------
     slots : the number of each entry, fill-in included.
     order : the unknowns, first to last.
-    below : of each pivot in order, row and slot of each entry in its column that comes later.
-    right : of each pivot in order, column and slot of each entry in its row that comes later.
-    updates : the slots that each pivot changes: its rows below by its columns right, row by row.
+    below : for each pivot in order, row and slot of each later entry in its column.
+    right : for each pivot in order, column and slot of each later entry in its row.
+    updates : the slots that each pivot changes: rows `below` by columns `right`, row by row.
     """
 
     slots: dict[Place, int]
@@ -81,27 +80,27 @@ class StepCoupling:
 
     Attributes
     ----------
-    places : the slopes, where they stand.
-    sizes : of each bank, how many rows of slopes its lanes have.
-    states : the shared states, by their place among all; borders come after them.
-    borders : how many there are.
+    places : the slopes with their places.
+    sizes : for each bank, the number of rows of slopes of its lanes.
+    states : the shared states, by their place among all states; borders come after them.
+    borders : the number of borders.
     entries : (row, column) of each slope between shared states.
     banks : in the order of the program.
-    solved : the elimination of the shared unknowns.
+    elimination : of the shared unknowns.
     """
 
-    places: tuple[At, ...]
+    places: tuple[PlacedSlope, ...]
     sizes: Mapping[str, int]
     states: tuple[int, ...]
     borders: int
-    entries: tuple[tuple[int, int], ...]
+    entries: tuple[Place, ...]
     banks: tuple[Bank, ...]
-    solved: Elimination
+    elimination: Elimination
 
     def tables(self, name: str) -> Iterator[str]:
         """Yield the tables in C."""
         size = len(self.states) + self.borders
-        slots = self.solved.slots
+        slots, order = self.elimination.slots, self.elimination.order
         yield "/* The equations of a step: shared unknowns, those of lanes, their elimination. */"
         yield "enum {"
         yield f"    {name}_shared = {len(self.states)}, /* shared states */"
@@ -114,11 +113,11 @@ class StepCoupling:
         yield "};"
         yield from table(f"{name}_place", [slots[place] for place in self.entries])
         yield from table(f"{name}_state", self.states)
-        yield from table(f"{name}_order", self.solved.order)
-        yield from table(f"{name}_pivot", [slots[n, n] for n in self.solved.order])
-        yield from _ranges(f"{name}_below", self.solved.below)
-        yield from _ranges(f"{name}_right", self.solved.right)
-        yield from table(f"{name}_update", self.solved.updates)
+        yield from table(f"{name}_order", order)
+        yield from table(f"{name}_pivot", [slots[n, n] for n in order])
+        yield from _ranges(f"{name}_below", self.elimination.below)
+        yield from _ranges(f"{name}_right", self.elimination.right)
+        yield from table(f"{name}_update", self.elimination.updates)
         for what in ("states", "columns", "rows"):
             yield from _ranges(f"{name}_lane_{what}", [getattr(b, what) for b in self.banks])
         before = accumulate((len(b.rows) * len(b.columns) for b in self.banks), initial=0)
@@ -129,12 +128,12 @@ class StepCoupling:
 
 def coupling_of(program: Program, slopes: Slopes) -> StepCoupling:
     """Return the structure of the equations of a step."""
-    return _Builder(program, slopes.entries).made()
+    return _Builder(program, slopes.entries).coupling()
 
 
 @final
 class _Builder:
-    """Finds places for slopes."""
+    """Finds the shared states, borders and places of slopes."""
 
     def __init__(self, program: Program, entries: Sequence[Entry]) -> None:
         self.program, self.entries = program, entries
@@ -147,62 +146,56 @@ class _Builder:
                 key = (entry.col, outer.right)
                 self.borders.setdefault(key, len(self.states) + len(self.borders))
 
-    def made(self) -> StepCoupling:
+    def coupling(self) -> StepCoupling:
         """Return the structure."""
         shared = [e for e in self.entries if e.row in self.index and e.col in self.index]
         pairs = [(self.index[e.row], self.index[e.col]) for e in shared]
-        found = [At(n, {}, None, e.value) for n, e in enumerate(shared)]
+        places = [PlacedSlope(n, {}, None, e.value) for n, e in enumerate(shared)]
         sizes: dict[str, int] = {}
         banks = []
         for name in self.program.counts:
             bank, values = self._bank(name)
             banks.append(bank)
             for n, value in enumerate(values):
-                found += [At(len(shared), {**sizes, name: n}, name, value)]
+                places.append(PlacedSlope(len(shared), {**sizes, name: n}, name, value))
             sizes[name] = len(values)
         size = len(self.states) + len(self.borders)
         meets = [(r, c) for bank in banks for r in bank.rows for c in bank.columns]
-        solved = elimination(size, [*pairs, *meets])
         return StepCoupling(
-            tuple(found),
-            sizes,
-            self.states,
-            len(self.borders),
-            tuple(pairs),
-            tuple(banks),
-            solved,
+            *(tuple(places), sizes, self.states, len(self.borders), tuple(pairs), tuple(banks)),
+            elimination(size, [*pairs, *meets]),
         )
 
     def _bank(self, name: str) -> tuple[Bank, list[Expr]]:
         """Return a bank, and its slopes: in a lane, by shared unknowns, in shared equations."""
         states = tuple(n for n, bank in enumerate(self.bank_of) if bank == name)
-        own = {(e.row, e.col): e.value for e in self.entries}
-        by: dict[tuple[int, int], Expr] = {}
-        into: dict[tuple[int, int], Expr] = {}
+        in_lane = {(e.row, e.col): e.value for e in self.entries}
+        by_shared: dict[Place, Expr] = {}
+        in_shared: dict[Place, Expr] = {}
         for e in self.entries:
             if e.row in states:
                 if e.col in self.index:
-                    by[e.row, self.index[e.col]] = e.value
+                    by_shared[e.row, self.index[e.col]] = e.value
                 for outer in e.outer:
                     key = e.row, self.borders[e.col, outer.right]
-                    by[key] = add(by.get(key, ZERO), outer.left)
+                    by_shared[key] = add(by_shared.get(key, ZERO), outer.left)
             if e.col in states and e.row in self.index:
-                into[self.index[e.row], e.col] = e.value
+                in_shared[self.index[e.row], e.col] = e.value
         for (col, right), border in self.borders.items():
             if col in states:
-                into[border, col] = right
-        columns = tuple(sorted({column for _, column in by}))
-        rows = tuple(sorted({row for row, _ in into}))
-        values = [own.get((a, b), ZERO) for a in states for b in states]
-        values += [by.get((a, column), ZERO) for a in states for column in columns]
-        values += [into.get((row, b), ZERO) for row in rows for b in states]
+                in_shared[border, col] = right
+        columns = tuple(sorted({column for _, column in by_shared}))
+        rows = tuple(sorted({row for row, _ in in_shared}))
+        values = [in_lane.get((a, b), ZERO) for a in states for b in states]
+        values += [by_shared.get((a, column), ZERO) for a in states for column in columns]
+        values += [in_shared.get((row, b), ZERO) for row in rows for b in states]
         return Bank(name, states, columns, rows), values
 
 
 def elimination(size: int, places: Iterable[Place]) -> Elimination:
-    """Return the elimination of a matrix with these entries, and its diagonal.
+    """Return the elimination of a matrix that has these entries and its diagonal.
 
-    Pivots stay on the diagonal; the unknown that touches fewest entries goes first (Markowitz).
+    Pivots are on the diagonal, in Markowitz's order: the one with the least fill-in first.
     """
     rows: list[set[int]] = [{n} for n in range(size)]
     columns: list[set[int]] = [{n} for n in range(size)]
@@ -234,13 +227,13 @@ def elimination(size: int, places: Iterable[Place]) -> Elimination:
 
 
 def _ranges(name: str, parts: Sequence[Sequence[int]]) -> Iterator[str]:
-    """Yield a table of lists, and where each begins and the last ends."""
+    """Yield the table of the bounds of some lists, and that of their items."""
     yield from table(f"{name}_at", [*accumulate(map(len, parts), initial=0)])
     yield from table(name, [n for part in parts for n in part])
 
 
 def table(name: str, numbers: Sequence[int]) -> Iterator[str]:
-    """Yield a table of numbers; one that is empty has a zero, since C has no empty arrays."""
+    """Yield a table of numbers; an empty one gets a zero, since C has no empty arrays."""
     yield f"static const int {name}[] = {{"
     line = "   "
     for n in numbers or (0,):

@@ -1,7 +1,7 @@
 """Differences written with ``expm1(z) = exp(z) - 1``, so that no digits cancel near z = 0.
 
-Two of them lose digits otherwise: T - T_0 where T = T_0*exp(S/c_0) (`with_excess`), and sums that
-hold ``I*exp(z)`` and ``-I``, as a diode's law does (`sharp`).
+Two forms would lose digits: T - T_0 where T = T_0*exp(S/c_0) (`with_excess`), and sums of
+``I*exp(z)`` and ``-I``, as in the law of a diode (`sharp`).
 """
 
 from collections.abc import Iterator, Mapping
@@ -13,12 +13,12 @@ from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, Sym,
 
 
 def with_excess(law: Expr, excesses: Mapping[tuple[Sym, Sym], Quantity]) -> Expr:
-    """Return a law with each difference ``T - T_0`` replaced by the name that it has.
+    """Return a law with differences such as ``T - T_0`` replaced by their names.
 
     Parameters
     ----------
     law : any expression.
-    excesses : for a temperature and a constant, the quantity that is their difference.
+    excesses : the quantity that is the difference of a temperature and a constant.
     """
     inner = rebuild(law, lambda part: with_excess(part, excesses))
     if not isinstance(inner, Add):
@@ -60,7 +60,7 @@ def _entry(entry: Entry) -> Entry:
 
 
 def sharp(node: Expr) -> Expr:
-    """Return an expression in which no exponential cancels, tables written as their pieces."""
+    """Return an expression in which no exponential cancels, with tables written as choices."""
     inner = rebuild(choices(node) if knots(node) else node, sharp)
     if not isinstance(inner, Add):
         return inner
@@ -78,7 +78,7 @@ def sharp(node: Expr) -> Expr:
 
 
 def _exponentials(term: Expr) -> Iterator[tuple[Expr, Expr]]:
-    """Yield each factor exp(z) of a term as (the term without it, the term with expm1(z))."""
+    """Yield, for each factor exp(z) of a term, the term without it and the term with expm1(z)."""
     match term:
         case Call("exp", args):
             yield ONE, Call("expm1", args)
@@ -92,7 +92,7 @@ def _exponentials(term: Expr) -> Iterator[tuple[Expr, Expr]]:
 
 
 def _normal(term: Expr) -> Expr:
-    """Return a term as `calculus` builds it, so that equal terms are equal trees."""
+    """Return a term in the form of `calculus`, so that equal terms are equal trees."""
     match term:
         case Neg(arg):
             return neg(_normal(arg))

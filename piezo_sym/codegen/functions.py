@@ -24,7 +24,7 @@ from piezo_sym.spec.elements.ports import (
 )
 
 STATE_INPUT, STATE = ("x", "u", "p"), ("x", "p")
-#: What each function returns, and its arguments.
+#: Docstring and arguments of each function.
 FUNCTIONS = {
     "initial_state": ("State at t = 0 [SI], for the inputs u at t = 0", ("u", "p")),
     "rhs": ("Rates dx/dt, the rows of J_ir dU/dx + g u", STATE_INPUT),
@@ -53,12 +53,12 @@ FUNCTIONS = {
 
 
 def functions_of(q: Quantities) -> tuple[ModuleFunction, ...]:
-    """Return every function of the module but the Jacobian and the margins."""
+    """Return the functions of the module, except Jacobian, margins and elements."""
     temperatures = (Sym(port.temperature) for port in q.bodies.values())
     S = add(*(Sym(port.state) for port in q.bodies.values()))
     U = add(*(q.total(e.law, e.bank) if e.bank else e.law for e in q.iphs.energies))
-    made = [
-        ("initial_state", _starts(q.iphs)),
+    functions = [
+        ("initial_state", _initial_rows(q.iphs)),
         ("rhs", rates_of(q)),
         ("outputs", _outputs(q)),
         ("supply", supply_of(q)),
@@ -70,14 +70,14 @@ def functions_of(q: Quantities) -> tuple[ModuleFunction, ...]:
     ]
     scalars = ("energy", "entropy")
     return tuple(
-        ModuleFunction(name, *FUNCTIONS[name], rows, name in scalars) for name, rows in made
+        ModuleFunction(name, *FUNCTIONS[name], rows, name in scalars) for name, rows in functions
     )
 
 
 def elements_of(
     q: Quantities, rates: tuple[OutputRow, ...], new: Names
 ) -> tuple[tuple[ElementRow, ...], tuple[Quantity, ...]]:
-    """Return the quantities of all elements, and the rates that they name."""
+    """Return the rows of all elements, and the quantities that name rates for them."""
     iphs, named, values = q.iphs, list[Quantity](), list[Expr]()
     for row in rates:
         if not isinstance(row.value, Sym):
@@ -88,7 +88,7 @@ def elements_of(
             "rate": values,
             "drive": q.drives,
             "heat": q.heats,
-            "input": [_brought(p.port, u, q) for p, u in zip(q.ports, q.inputs, strict=True)],
+            "input": _definition_inputs(q),
             "output": [row.value for row in _outputs(q)],
             "supply": [row.value for row in supply_of(q)],
         }
@@ -101,12 +101,12 @@ def elements_of(
         for n in range(len(given[0][0].rows))
     ]
     words |= in_words({"answer": answers})
-    found = (row._replace(value=_inserted(row.value, words)) for row in element_rows(iphs))
-    return tuple(found), tuple(named)
+    rows = (row._replace(value=_with_values(row.value, words)) for row in element_rows(iphs))
+    return tuple(rows), tuple(named)
 
 
-def _inserted(value: Expr, words: Mapping[str, Expr]) -> Expr:
-    """Return a row of an element; a law, which has no such words, keeps its spelling."""
+def _with_values(value: Expr, words: Mapping[str, Expr]) -> Expr:
+    """Return an expression with `words` replaced; one without any keeps its spelling."""
     return value if words.keys().isdisjoint(names(value)) else inserted(value, words)
 
 
@@ -123,18 +123,22 @@ def rates_of(q: Quantities) -> tuple[OutputRow, ...]:
         if isinstance(q.stores[n][1], Body):
             value = _entropy_rate(n, q)
         else:
-            terms = [*q.product(q.iphs.system.J0, n, q.costates)]
-            terms += [neg(term) for term in q.product(q.iphs.system.B, n, q.outputs)]
-            terms += [*q.product(q.iphs.system.G, n, q.inputs)]
-            value = add(*_arranged(terms, q))
+            terms = [*_structure_terms(n, q), *q.product(q.iphs.system.G, n, q.inputs)]
+            value = add(*_shared_first(terms, q))
         rows.append(OutputRow(slot, value))
     return tuple(rows)
 
 
-def _arranged(terms: list[Expr], q: Quantities) -> list[Expr]:
-    """Return terms with those all lanes share first, and a positive one in front if there is one.
+def _structure_terms(n: int, q: Quantities) -> Iterator[Expr]:
+    """Yield the terms of a rate from co-states and from outputs of processes."""
+    yield from q.product(q.iphs.system.J0, n, q.costates)
+    yield from (neg(term) for term in q.product(q.iphs.system.B, n, q.outputs))
 
-    In array code the shared part of a bank's row is then computed once, and no array is negated.
+
+def _shared_first(terms: list[Expr], q: Quantities) -> list[Expr]:
+    """Return terms, those that all lanes share first, and a positive one in front of all.
+
+    In array code, the shared part of a bank's row is then computed once, and no array is negated.
     """
     ordered = sorted(terms, key=lambda term: bank_of(term, q.lanes) is not None)
     front = next((n for n, term in enumerate(ordered) if signed(term)[0] == "+"), 0)
@@ -142,28 +146,31 @@ def _arranged(terms: list[Expr], q: Quantities) -> list[Expr]:
 
 
 def _entropy_rate(n: int, q: Quantities) -> Expr:
-    """Return a body's heats over its temperature, what currents carry and environments bring."""
+    """Return the entropy rate of a body: heats over temperature, conduction, currents, inputs."""
     slots = q.iphs.system.processes
     heats = [
         q.total(q.heats[k], slots[k].bank) for k, row in enumerate(q.iphs.system.heats) if row == n
     ]
     terms = [div(add(*heats), q.costates[n])] if heats else []
-    terms += [*q.product(q.iphs.system.J0, n, q.costates)]
-    terms += [neg(term) for term in q.product(q.iphs.system.B, n, q.outputs)]
-    brought = [_brought(placed.port, u, q) for placed, u in zip(q.ports, q.inputs, strict=True)]
-    return add(*terms, *q.product(q.iphs.system.G, n, brought))
+    terms += _structure_terms(n, q)
+    return add(*terms, *q.product(q.iphs.system.G, n, _definition_inputs(q)))
 
 
 def exchanges_of(q: Quantities) -> Iterator[OutputRow]:
-    """Yield the entropy rate that each exchange or source of heat brings, and the body."""
+    """Yield the entropy rate into a body from each heat exchange or heat source."""
     for entry in q.ports:
         port = entry.port
         if isinstance(port, Exchange | HeatInput):
-            yield OutputRow(Slot(port.body), _brought(port, Sym(port.input), q))
+            yield OutputRow(Slot(port.body), _definition_input(port, Sym(port.input), q))
 
 
-def _brought(port: Port, u: Expr, q: Quantities) -> Expr:
-    """Return the input of Definition 1 behind a port: its own, P/T or lam*(T_e/T - 1)."""
+def _definition_inputs(q: Quantities) -> list[Expr]:
+    """Return the inputs u of Definition 1, one per port."""
+    return [_definition_input(p.port, u, q) for p, u in zip(q.ports, q.inputs, strict=True)]
+
+
+def _definition_input(port: Port, u: Expr, q: Quantities) -> Expr:
+    """Return the input of Definition 1 for a port: u itself, P/T or lam*(T_e/T - 1)."""
     if not isinstance(port, Exchange | HeatInput):
         return u
     ratio = div(u, Sym(q.bodies[port.body].temperature))
@@ -186,7 +193,7 @@ def _output(n: int, q: Quantities) -> Expr:
 
 
 def supply_of(q: Quantities) -> tuple[OutputRow, ...]:
-    """Return the power put in, a row per port."""
+    """Return the power supplied through each port."""
     rows = []
     for y, placed, u in zip(_outputs(q), q.ports, q.inputs, strict=True):
         power = mul(y.value, u)
@@ -218,7 +225,7 @@ def _rows(slots: Iterable[Slot], values: Iterable[Expr]) -> tuple[OutputRow, ...
     return tuple(OutputRow(slot, value) for slot, value in zip(slots, values, strict=True))
 
 
-def _starts(iphs: IPHS) -> tuple[OutputRow, ...]:
-    """Return the initial state; a bank's row lists its lanes where they differ."""
+def _initial_rows(iphs: IPHS) -> tuple[OutputRow, ...]:
+    """Return the initial state; the row of a bank lists its lanes if they differ."""
     rows = zip(iphs.system.states, iphs.starts, strict=True)
     return tuple(OutputRow(slot, one, (one, *more) if more else ()) for slot, (one, *more) in rows)

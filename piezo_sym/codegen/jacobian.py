@@ -1,11 +1,11 @@
 """The Jacobian of the rates, by the chain rule through the named quantities.
 
-Input: the rows of `rhs` and the quantities they use.  Output: the entries that are not zero for
-every state and every size of banks, and the derivatives that deserve a name (``dT_dS``).
+Input: the rows of `rhs` and the quantities they use.  Output: the entries that are not identically
+zero, and the derivatives that get a name (``dT_dS``).
 
 The derivative of one value by one state is a `_Slope`: `value`, in the lane that either of them has
-(in equal lanes, if both have one), plus products over all pairs of lanes where a sum over lanes
-lies between them.
+(in equal lanes if both have one), plus products over all pairs of lanes if a sum over lanes lies
+between them.
 """
 
 from collections.abc import Iterable, Mapping
@@ -31,7 +31,7 @@ from piezo_sym.expressions.tree import ONE, ZERO, Expr, LaneSum, Sym, names, reb
 @final
 @dataclass(frozen=True)
 class _Slope:
-    """A derivative by one state; see the module's head."""
+    """A derivative by one state; see the module's docstring."""
 
     value: Expr = ZERO
     outer: tuple[Outer, ...] = ()
@@ -51,19 +51,19 @@ def jacobian_of(
     ----------
     rates : rows of the right-hand side, one per state.
     states : in the same order.
-    quantities : what rates are made of, in order.
+    quantities : those that the rates use, in order.
     lanes : the bank of every name that has a value per lane.
     new : gives names to derivatives.
-    known : expressions that have a name, and are written by it.
+    known : expressions that have a name already.
     """
     before, _ = needed(quantities, (rate.value for rate in rates))
     users, rows = (_users(item.value for item in items) for items in (before, rates))
     sums: dict[Expr, Sym] = {
         item.value: Sym(item.name) for item in quantities if isinstance(item.value, LaneSum)
     }
-    made, entries = _Named(dict(lanes), sums, known, new, []), list[Entry]()
+    named, entries = _NamedDerivatives(dict(lanes), sums, known, new, []), list[Entry]()
     for col, state in enumerate(states):
-        chain = _Chain(state, made)
+        chain = _Chain(state, named)
         waiting = sorted({n for name in chain.slopes for n in users.get(name, ())})
         while waiting:
             quantity = before[n := heappop(waiting)]
@@ -74,22 +74,22 @@ def jacobian_of(
         for n in sorted({n for name in chain.slopes for n in rows.get(name, ())}):
             slope = chain.of(rates[n].value, rates[n].slot.bank)
             entries += [Entry(n, col, slope.value, slope.outer)] if slope != _Slope() else []
-    return tuple(sorted(entries, key=attrgetter("row", "col"))), tuple(made.defined)
+    return tuple(sorted(entries, key=attrgetter("row", "col"))), tuple(named.defined)
 
 
 def _users(values: Iterable[Expr]) -> Mapping[str, list[int]]:
-    """Return for each name in which of some expressions it stands."""
-    found: dict[str, list[int]] = {}
+    """Return the numbers of the expressions in which each name occurs."""
+    users: dict[str, list[int]] = {}
     for n, value in enumerate(values):
         for name in names(value):
-            found.setdefault(name, []).append(n)
-    return found
+            users.setdefault(name, []).append(n)
+    return users
 
 
 @final
 @dataclass(frozen=True)
-class _Named:
-    """What has a name, and the derivatives that get one."""
+class _NamedDerivatives:
+    """The derivatives that get a name; expressions in `sums` and `known` have one already."""
 
     lanes: dict[str, str]
     sums: dict[Expr, Sym]
@@ -114,7 +114,7 @@ class _Named:
         return self.sums[key]
 
     def spelled(self, value: Expr) -> Expr:
-        """Return an expression in which all that has a name is written by it."""
+        """Return an expression with its `known` parts replaced by their names."""
         return self.known.get(value) or rebuild(value, self.spelled)
 
 
@@ -122,28 +122,28 @@ class _Named:
 class _Chain:
     """The chain rule for one state, quantity after quantity."""
 
-    def __init__(self, state: Described, made: _Named) -> None:
-        self.state, self.made = state, made
+    def __init__(self, state: Described, derivatives: _NamedDerivatives) -> None:
+        self.state, self.derivatives = state, derivatives
         self.named: dict[Expr, Sym] = {}
-        self.word = ""  # what a sum over lanes in a derivative is called by
+        self.word = ""  # the name for a sum over lanes in a derivative
         self.slopes: dict[str, _Slope] = {state.name: _Slope(ONE)}
 
     def differentiate(self, quantity: Quantity) -> None:
-        """Find the derivative of a quantity by the state; name it if it is more than a factor."""
+        """Find the derivative of a quantity by the state; name it if it has two names or more."""
         self.word = f"d{quantity.name}_d{self.state.name}"
         slope = self.of(quantity.value, quantity.bank)
         if slope == _Slope():
             return
-        value = self.made.spelled(slope.value)
+        value = self.derivatives.spelled(slope.value)
         if len(names(value)) > 1:
             bank = quantity.bank or self.state.bank
             if value not in self.named:
-                self.named[value] = self.made.define(self.word, value, bank, "derivatives")
+                self.named[value] = self.derivatives.define(self.word, value, bank, "derivatives")
             slope = _Slope(self.named[value], slope.outer)
         self.slopes[quantity.name] = slope
 
     def of(self, value: Expr, bank: str | None) -> _Slope:
-        """Return the derivative of an expression, itself one per lane of `bank` or shared."""
+        """Return the derivative of an expression that has a value per lane of `bank`, or one."""
         if isinstance(value, LaneSum):
             return self._of_sum(self.of(value.arg, value.bank), value.bank)
         own: list[Expr] = []
@@ -153,7 +153,7 @@ class _Chain:
             if slope is None:
                 continue
             factor = derivative(value, name)
-            if bank and self.state.bank and not self.made.lanes.get(name):
+            if bank and self.state.bank and not self.derivatives.lanes.get(name):
                 outer.append(Outer(factor, slope.value))
             else:
                 own.append(mul(factor, slope.value))
@@ -168,4 +168,4 @@ class _Chain:
         return _Slope(add(slope.value, *across))
 
     def _total(self, term: Expr, bank: str) -> Expr:
-        return ZERO if term == ZERO else self.made.total(term, bank, self.word)
+        return ZERO if term == ZERO else self.derivatives.total(term, bank, self.word)

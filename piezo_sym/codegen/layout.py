@@ -1,8 +1,8 @@
-"""Where rows stand when banks have sizes that are known only at run time.
+"""The layout of rows in a vector, for banks whose sizes are known at run time only.
 
-Input: slots.  Output: index text, such as ``3 : 3 + hysteron_count``.  With more banks than one
-can add up, the end of each bank's rows gets a name, defined once at the head of a function; text
-then grows with the number of banks, not with its square.
+Input: slots.  Output: index text, such as ``3 : 3 + hysteron_count``.  If there are many banks, the
+end of each bank's rows gets a name, defined once at the head of a function, so that the text grows
+with the number of banks, not with its square.
 """
 
 from collections import Counter
@@ -16,7 +16,7 @@ from piezo_sym.codegen.program import Names
 from piezo_sym.expressions.text import PRODUCT, SUM, Piece, enclose, signed
 from piezo_sym.expressions.tree import Add, Expr
 
-#: Sizes of so many banks are spelled out where they are used.
+#: The most banks whose sizes are added up in each index.
 SPELLED = 2
 
 
@@ -27,28 +27,28 @@ class Places:
 
     Attributes
     ----------
-    slots : one per row, or one per bank of rows.
-    ends : the name of each bank's end, by the bank's slot; empty where sizes are spelled out.
+    slots : one per row, or one for the rows of a bank.
+    ends : names of the ends of banks, by slot number; empty if sizes are added up in each index.
     """
 
     slots: Sequence[Slot]
     ends: dict[int, str] = field(default_factory=dict)
 
     def position(self, n: int) -> str:
-        """Return the place of slot n's first row; that of n = len(slots) is the size."""
+        """Return the place of the first row of slot n; for n = len(slots), the size."""
         return self._positions[n]
 
     @cached_property
     def _positions(self) -> tuple[str, ...]:
-        found, fixed, sizes = ["0"], 0, list[str]()
+        positions, fixed, sizes = ["0"], 0, list[str]()
         for n, slot in enumerate(self.slots):
             if slot.bank and self.ends:
                 fixed, sizes = 0, [self.ends[n]]
             else:
                 fixed += slot.bank is None
                 sizes += [f"{slot.bank}_count"] if slot.bank else []
-            found.append(_sum(fixed, sizes))
-        return tuple(found)
+            positions.append(_sum(fixed, sizes))
+        return tuple(positions)
 
     def bounds(self, n: int) -> tuple[str, str]:
         """Return the places of slot n's first row, and of that after its last."""
@@ -74,7 +74,7 @@ class Places:
 
 
 def places(slots: Sequence[Slot], word: str, taken: Collection[str]) -> Places:
-    """Return the places of slots; ends are named after `word` and their bank."""
+    """Return the places of slots; ends are named after `word` and the slot."""
     banks = {n: slot for n, slot in enumerate(slots) if slot.bank}
     if len(banks) <= SPELLED:
         return Places(slots)
@@ -94,8 +94,8 @@ def size_in_words(slots: Sequence[Slot]) -> str:
     return f"{fixed} + the sizes of {banks.total()} banks"
 
 
-def terms(value: Add, write: Callable[[Expr], Piece]) -> Iterator[str]:
-    """Yield a long sum term by term, a line each, with its sign."""
+def term_lines(value: Add, write: Callable[[Expr], Piece]) -> Iterator[str]:
+    """Yield one line for each term of a long sum, with its sign."""
     first, *rest = value.terms
     yield enclose(write(first), SUM)
     for term in rest:

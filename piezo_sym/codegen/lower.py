@@ -1,7 +1,7 @@
-"""IPHS to program: Definition 1 row by row, each co-state and law by its name.
+"""IPHS to program: Definition 1 row by row, in named co-states and laws.
 
-Input: an `IPHS` and the verdict on it.  Output: a `Program`.  Terms stand in the order of the
-states, then the processes, then the inputs; laws keep the spelling of the spec.
+Input: an `IPHS` and the verdict on it.  Output: a `Program`.  Terms are in the order of states,
+processes and inputs; laws keep the spelling of the spec.
 """
 
 from collections.abc import Iterator
@@ -33,7 +33,7 @@ def lower(iphs: IPHS, verdict: str) -> Program:
     names = Names(q.taken)
     elements, named = elements_of(q, rates, names)
     entries, derivatives = jacobian_of(rates, q.states, q.defined, q.lanes, names, q.temperatures)
-    found = replace(
+    program = replace(
         program_of(q, functions),
         verdict=verdict,
         functions=(*functions, element_function(elements)),
@@ -43,11 +43,11 @@ def lower(iphs: IPHS, verdict: str) -> Program:
         limits=q.limits,
         taken=frozenset(names.taken),
     )
-    return sharp_program(found)
+    return sharp_program(program)
 
 
 def program_of(q: Quantities, functions: tuple[ModuleFunction, ...]) -> Program:
-    """Return a program of some functions of a system's quantities."""
+    """Return a program of some functions, without Jacobian, limits and elements."""
     model = q.iphs.model
     return Program(
         name=model.name,

@@ -1,11 +1,11 @@
-"""Path functionals: elements whose effort depends on the way that their coordinate goes.
+"""Path functionals: elements whose effort depends on the path of their coordinate.
 
-Input: the quantities of a system.  Output: its `Path` records, and what a stage and the slopes for
-Newton's method are told of them.  An elastic-plastic stop has an inner state z and the effort
-f = stiffness*z; z goes with the coordinate while |z| < limit, and where it would leave, it stays,
-the rest slips and all that is done becomes heat.  A stage is given weighted means of effort, rate
-of the slip and heat, exact along the step (run/engine/stop.c), and in which part of the step z goes
-with the coordinate.
+Input: the quantities of a system.  Output: its `Path` records, and the quantities of a stage and of
+the slopes for Newton's method with them.  An elastic-plastic stop has an inner state z and the
+effort f = stiffness*z.  While |z| < limit, z follows the coordinate; at the limit z stays, the
+coordinate slips, and the work becomes heat.  A stage is given the weighted means of effort, slip
+rate and heat, exact along the step (run/engine/stop.c), and the share of the step in which z
+follows the coordinate.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,13 +26,13 @@ class Path:
 
     Attributes
     ----------
-    inner : a state, whose rate is `drive` less `slip` and whose energy is stiffness*inner**2/2.
+    inner : the inner state; its rate is `drive` - `slip`, its energy stiffness*inner**2/2.
     bank : of the inner state.
-    drive : the rate of the coordinate, of quantities of a stage that no path gives.
-    own : whether each lane has a drive of its own.
+    drive : the rate of the coordinate, in quantities that do not depend on paths.
+    own : whether each lane has its own drive.
     stiffness : in parameters.
-    limit : of the inner state, >= 0, as it is where a step begins.
-    effort, slip, heat, share : the names of what stages are given.
+    limit : of the inner state, >= 0, at the beginning of a step.
+    effort, slip, heat, share : the names of the means and the share that stages are given.
     """
 
     inner: str
@@ -47,20 +47,20 @@ class Path:
     share: str
 
     def given(self) -> Iterator[Described]:
-        """Yield what stages are given, in the order of the engine."""
+        """Yield the values that stages are given, in the order of the engine."""
         for name in (self.effort, self.slip, self.heat, self.share):
             yield Described(name, "", "", self.bank)
 
     @property
-    def slip_in_motion(self) -> Expr:
-        """The slip in the mean, of the part of the step in which it yields."""
+    def mean_slip(self) -> Expr:
+        """The mean slip rate: the drive, in the share of the step in which the stop yields."""
         return mul(add(ONE, neg(Sym(self.share))), self.drive)
 
 
 def paths_of(q: Quantities, new: Names) -> tuple[Path, ...]:
     """Return the stops of a system."""
     stores = {port.state: port for _, port in q.stores if isinstance(port, Storage)}
-    found = []
+    paths = []
     processes = q.iphs.circuit.of(DissipativePort, Conductor)
     for k, (placed, port) in enumerate(processes):
         if isinstance(port, Conductor) or port.limit is None:
@@ -69,7 +69,7 @@ def paths_of(q: Quantities, new: Names) -> tuple[Path, ...]:
         slope = derivative(store.law, store.state)
         heat = next((d.name for d in q.defined if d.value == q.heats[k]), None)
         drive = q.drive(k)
-        found.append(
+        paths.append(
             Path(
                 inner=store.state,
                 bank=bank,
@@ -83,24 +83,24 @@ def paths_of(q: Quantities, new: Names) -> tuple[Path, ...]:
                 share=new(f"share_{port.output}"),
             )
         )
-    return tuple(found)
+    return tuple(paths)
 
 
-def given_to(q: Quantities, paths: Sequence[Path]) -> Quantities:
-    """Return the quantities of a stage, to which paths give efforts, slips and heats."""
+def stage_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:
+    """Return the quantities of a stage, which is given the efforts, slips and heats of paths."""
     given = {name for path in paths for name in (path.effort, path.slip, path.heat)}
     heats = {q.heats[k]: Sym(p.heat) for p in paths for k in [q.outputs.index(Sym(p.slip))]}
 
-    def put(node: Expr) -> Expr:
-        return heats.get(node) or rebuild(node, put)
+    def named(node: Expr) -> Expr:
+        return heats.get(node) or rebuild(node, named)
 
-    rest = tuple(replace(d, value=put(d.value)) for d in q.defined if d.name not in given)
-    return replace(q, defined=rest, heats=tuple(map(put, q.heats)), given=_lanes(paths))
+    rest = tuple(replace(d, value=named(d.value)) for d in q.defined if d.name not in given)
+    return replace(q, defined=rest, heats=tuple(map(named, q.heats)), given=_lanes(paths))
 
 
-def in_motion(q: Quantities, paths: Sequence[Path]) -> Quantities:
-    """Return quantities for slopes, from which Newton's method learns how paths go by the state."""
-    slips = {path.slip: path.slip_in_motion for path in paths}
+def slope_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:
+    """Return the quantities for slopes: slips of paths as differentiable functions of the state."""
+    slips = {path.slip: path.mean_slip for path in paths}
     defined = tuple(replace(d, value=slips.get(d.name, d.value)) for d in q.defined)
     return replace(q, defined=defined, given=_lanes(paths))
 

@@ -1,6 +1,6 @@
-"""Products of a system's matrices as expressions: terms, the sums over lanes in them, slips' rates.
+"""Products of a system's matrices as expressions: terms, sums over lanes, rates of slips.
 
-Input: a `LaneMatrix` and the names of what it is multiplied by.  Output: terms, or sums to define.
+Input: a `LaneMatrix` and the names of its factors.  Output: terms, or sums to define.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,7 +20,7 @@ SUMS = "sums over lanes"
 def product(
     block: LaneMatrix, row: int, factors: Sequence[Expr], sums: Mapping[Expr, Sym]
 ) -> Iterator[Expr]:
-    """Yield the terms of ``(block @ factors)[row]``, column by column; `sums` have names."""
+    """Yield the terms of ``(block @ factors)[row]``, column by column, `sums` by their names."""
     for c, full, own in block.by_row.get(row, ()):
         bank, factor = block.cols[c].bank, factors[c]
         if full != 0:
@@ -45,7 +45,7 @@ def slip_rate(
     given: tuple[Sequence[Sym], Sequence[Sym]],
     sums: Mapping[Expr, Sym],
 ) -> Iterator[Expr]:
-    """Yield the terms of a state's rate but for those of its own slip."""
+    """Yield the terms of the rate of a state, without those of its own slip, process `own`."""
     system, (costates, inputs) = iphs.system, given
     row = [slot.label for slot in system.states].index(state)
     yield from product(system.J0, row, costates, sums)

@@ -1,9 +1,9 @@
-"""The program: what a generated module computes, before any language.
+"""The program of a generated module, independent of any language.
 
 Input: nothing; these are the types.  Output: frozen records that lowering fills and printers read.
 A program is a list of named quantities in an order in which each can be computed from earlier ones,
 and functions whose rows are expressions in them.  A quantity has one value, or one per lane of a
-bank; a sum over lanes is always a quantity of its own.  There is no algebra beyond this point.
+bank; a sum over lanes is always a quantity of its own.  Printers do no algebra.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -16,13 +16,13 @@ from piezo_sym.spec.names import fresh
 from piezo_sym.spec.values import HASH, VERDICT, lane_name, place
 from piezo_sym.version import VERSION
 
-#: What every generated file says of itself.
+#: The mark of every generated file.
 MARK = "Made by piezo_sym"
 
 
 @final
 class Names:
-    """The names in use; called with a word, it takes a name that begins with it and is new."""
+    """The names in use; a call with a word returns a new name that begins with it."""
 
     def __init__(self, taken: Iterable[str]) -> None:
         self.taken = set(taken)
@@ -57,8 +57,13 @@ class Described:
 
     @property
     def spread(self) -> str:
-        """The rows that it stands for: those of a bank from its first lane to its last."""
+        """The names of its rows, those of a bank from the first lane to the last."""
         return f"{self.name}_1 ... {self.name}_{self.bank}_count" if self.bank else self.name
+
+    @property
+    def slot(self) -> Slot:
+        """Its row, or rows, in a vector."""
+        return Slot(self.name, self.bank)
 
 
 @final
@@ -68,9 +73,9 @@ class OutputRow:
 
     Attributes
     ----------
-    slot : which row; a bank's stands for one per lane.
-    value : may differ from lane to lane if the slot is a bank's.
-    listed : instead, a value for each lane, where the spec lists them.
+    slot : the row, or for a bank one row per lane.
+    value : one, or for a bank one per lane.
+    listed : the values of the lanes instead, if the spec lists them.
     """
 
     slot: Slot
@@ -108,7 +113,7 @@ class Entry:
 @final
 @dataclass(frozen=True)
 class ModuleFunction:
-    """A function of a module: a vector with one row a slot (`scalar`: its one row alone)."""
+    """A function of a module: a vector with one row per slot, or the one row if `scalar`."""
 
     name: str
     doc: str
@@ -173,7 +178,7 @@ class Program:
 
 
 def blank(program: Program) -> Program:
-    """Return a program with places instead of values, hash and verdict, as templates have them."""
+    """Return a program with the places of a template instead of values, hash and verdict."""
     values = {
         name: place(name)
         if isinstance(value, str)
@@ -183,7 +188,7 @@ def blank(program: Program) -> Program:
     return replace(program, defaults=values, sha256=place(HASH), verdict=place(VERDICT))
 
 
-#: What the first lines of a file mean, for who reads no other.
+#: Explanations in the head of each file.
 SYSTEM = (
     "System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its",
     "         rows, multiplied out; `piezo-sym show` prints the matrices",
@@ -194,16 +199,16 @@ PROOFS = (
 )
 
 
-def described(
+def head_lines(
     program: Program,
     plain: Callable[[str], str],
     notes: Iterable[str],
     parameters: tuple[str, str],
     counts: str = "",
 ) -> list[str]:
-    """Return the lines that say at the head of a file what it is.
+    """Return the text at the head of a file.
 
-    `plain` makes a text safe; `parameters` is what its functions call them, and their type.
+    `plain` makes a text safe; `parameters` are name and type of the parameters in functions.
     """
     p, kind = parameters
     apart = "" if p == "p" else ", with an underscore beside the model's own p"
@@ -230,7 +235,7 @@ def described(
 def needed(
     quantities: Iterable[Quantity], roots: Iterable[Node]
 ) -> tuple[tuple[Quantity, ...], frozenset[str]]:
-    """Return the quantities that some expressions need, in order, and every name they use."""
+    """Return the quantities that some expressions need, in order, and all names in use."""
     used = {name for root in roots for name in names(root)}
     kept: list[Quantity] = []
     for quantity in reversed(tuple(quantities)):
@@ -241,7 +246,7 @@ def needed(
 
 
 def bank_of(node: Node, lanes: Mapping[str, str]) -> str | None:
-    """Return the bank over whose lanes an expression differs; a sum over lanes has none."""
+    """Return the bank per lane of which an expression has a value; a sum over lanes has none."""
     if isinstance(node, LaneSum):
         return None
     return next((lanes[name] for name in names(node) if name in lanes), None)

@@ -30,10 +30,10 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.tables import condition_text, conditions, lane_parameters
+from piezo_sym.spec.tables import condition_text, conditions, greater, lane_parameters
 
 COSTATES = "co-states dU/dx"
-#: Of a temperature and a constant: the quantity that is their difference.
+#: The quantity that is the difference of a temperature and a constant.
 Excesses = Mapping[tuple[Sym, Sym], Quantity]
 
 
@@ -47,11 +47,11 @@ class Quantities:
     defined : in an order in which they can be computed.
     costates : of each state; a body's is its temperature.
     inputs : of each port.
-    forces, drives, outputs, heats : of each process its driving force, z that W is conjugate to,
-        output W, and heat W z.
+    forces, drives, outputs, heats : of each process, its driving force, the conjugate variable z,
+        the output W, and the heat W z.
     limits : the conditions of the domain.
     taken : every name in use.
-    given : of names that are no quantities, those that have a value per lane, and the bank.
+    given : the bank of each given name, one that is no quantity, with a value per lane.
     """
 
     iphs: IPHS
@@ -109,13 +109,13 @@ class Quantities:
         return _by_value(self.defined)
 
     def total(self, term: Expr, bank: str | None) -> Sym:
-        """Return the name of a term, summed over the lanes of its bank if it has one."""
+        """Return the name of a term, or of its sum over the lanes of `bank`."""
         if isinstance(term, Sym) and not bank:
             return term
         return self._names[LaneSum(term, bank) if bank else term]
 
     def drive(self, k: int) -> Expr:
-        """Return the rate that drives the slip which is process k."""
+        """Return the rate that drives the slip of process k."""
         _, port = tuple(self.iphs.circuit.of(DissipativePort, Conductor))[k]
         given = self.costates, self.inputs
         rate = add(*slip_rate(self.iphs, getattr(port, "state", ""), k, given, self._names))
@@ -172,32 +172,31 @@ def _input(placed: Placed) -> str:
 
 
 def _excesses(iphs: IPHS, new: Names) -> dict[tuple[Sym, Sym], Quantity]:
-    """Return the difference of each temperature to a constant of which it is an exponential."""
-    found = {}
+    """Return T - T_0 for each temperature of the form T = T_0*exp(z)."""
+    excesses = {}
     for _, body in iphs.circuit.of(Body):
         match body.law:
             case Mul(Sym() as cold, Call("exp", args)):
                 name, value = f"{body.temperature}_minus_{cold.name}", Call("expm1", args)
                 excess = Quantity(new(name), mul(cold, value), None, COSTATES)
-                found[Sym(body.temperature), cold] = excess
-    return found
+                excesses[Sym(body.temperature), cold] = excess
+    return excesses
 
 
 def _laws(iphs: IPHS, excesses: Excesses) -> dict[str, Expr]:
     """Return ratios, slopes of laws in a loop, and laws of processes by their names."""
-    found = {port.name: port.ratio for _, port in iphs.circuit.of(Coupling)}
-    found |= {str(slope.symbol.name): slope.law for slope in iphs.junction.slopes}
-    found |= {port.output: port.law for _, port in iphs.circuit.of(DissipativePort)}
-    return {name: with_excess(law, excesses) for name, law in found.items()}
+    laws = {port.name: port.ratio for _, port in iphs.circuit.of(Coupling)}
+    laws |= {str(slope.symbol.name): slope.law for slope in iphs.junction.slopes}
+    laws |= {port.output: port.law for _, port in iphs.circuit.of(DissipativePort)}
+    return {name: with_excess(law, excesses) for name, law in laws.items()}
 
 
 def _limits(iphs: IPHS, excesses: Excesses) -> Iterator[Limit]:
-    """Yield the conditions of the domain: left minus right side, or the reverse."""
+    """Yield the conditions of the domain with their margins, greater minus smaller side."""
     for condition in conditions(iphs.model):
-        test = condition.tree
-        ends = (test.left, test.right) if test.op.startswith(">") else (test.right, test.left)
-        margin = with_excess(add(ends[0], neg(ends[1])), excesses)
-        yield Limit(condition_text(test), "=" not in test.op, margin)
+        test = greater(condition.tree)
+        margin = with_excess(add(test.left, neg(test.right)), excesses)
+        yield Limit(condition_text(condition.tree), "=" not in test.op, margin)
 
 
 # Definitions
@@ -215,7 +214,7 @@ def _costates(iphs: IPHS, excesses: Excesses) -> Iterator[Quantity]:
 
 
 def _junction(iphs: IPHS, laws: Mapping[str, Expr]) -> Iterator[Quantity]:
-    """Yield ratios, and how resistors in a loop share what drives them."""
+    """Yield ratios, and the slopes and shares of resistors in a loop."""
     for _, port in iphs.circuit.of(Coupling):
         yield Quantity(port.name, laws[port.name], None, "transducer ratios")
     for slope in iphs.junction.slopes:
@@ -233,7 +232,7 @@ def _processes(
     inputs: Sequence[Sym],
     sums: Mapping[Expr, Sym],
 ) -> Iterator[tuple[tuple[Quantity, ...], Expr, Expr]]:
-    """Yield what each process defines, its driving force and what W is conjugate to."""
+    """Yield the quantities of each process, its driving force and the conjugate variable z."""
     states, driven = iphs.system.B.T, iphs.system.D.T
     T = {placed.element: Sym(body.temperature) for placed, body in iphs.circuit.of(Body)}
     lanes = {c.name for c, slot in zip(costates, iphs.system.states, strict=True) if slot.bank}

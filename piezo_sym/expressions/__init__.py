@@ -4,8 +4,8 @@
     parse        text to a tree; `lexer` and `size` refuse what is too long or too deep
     calculus     sums, products, derivatives; `integrals`, `energies` their antiderivatives
     dimensions   which parts must have equal units
-    exact_eval   the value for certain: a rational, or a ball
+    exact_eval   the exact value: a rational, or a ball that contains it
     text         a tree to text, in the language of a `Style`
 
-Input and output: each file says its own.  Nothing here knows of elements or models.
+Input and output: see each file.  Nothing here knows of elements or models.
 """

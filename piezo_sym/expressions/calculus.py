@@ -1,7 +1,7 @@
 """Sums, products and derivatives of laws, as short trees.
 
 Input: trees, and a name to differentiate by.  Output: a tree.  Used for the generated Jacobians and
-for the rules in the records of functions.  Constants are folded as exact rationals here, so that
+for the rules in the records of functions.  Constants are folded as exact rationals, so that
 generated text does not depend on the version of SymPy.
 """
 
@@ -75,7 +75,7 @@ def neg(arg: Expr) -> Expr:
 
 
 def mul(left: Expr, right: Expr) -> Expr:
-    """Return a product; numbers come to the front, signs come out, a choice takes the factor in."""
+    """Return a product: numbers in front, signs outside, factors inside a choice of constants."""
     match left, right:
         case (Num(a), Num(b)):
             return Num(a * b)
@@ -132,7 +132,7 @@ def _scaled(factor: Fraction, arg: Expr) -> Expr:
 
 
 def div(top: Expr, bottom: Expr) -> Expr:
-    """Return a quotient; signs come out, numbers fold, a quotient of a quotient is one quotient."""
+    """Return a quotient: signs outside, numbers folded, a quotient of a quotient as one."""
     match top, bottom:
         case (Num(value), _) if value == 0:
             return ZERO
@@ -203,34 +203,34 @@ def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
 
 
 def rule(text: str, x: Expr, w: Expr = ZERO, value: Expr = ZERO) -> Expr:
-    """Return the tree of a record's text, its arguments and its value put in."""
+    """Return the tree of a rule in a function's record, with arguments and value inserted."""
     return inserted(parse_rule(text), {"x": x, "w": w, "y": value})
 
 
 def clause(text: str, x: Expr, value: Expr) -> tuple[Cmp, ...]:
-    """Return the comparisons of a record's text, the argument and the value put in."""
+    """Return the comparisons of a fact in a function's record, with argument and value inserted."""
     words = {"x": x, "y": value}
     parts = parse_clause(text)
     return tuple(Cmp(c.op, inserted(c.left, words), inserted(c.right, words)) for c in parts)
 
 
 def choices(node: Expr) -> Expr:
-    """Return a function with kinks as choices, of a width >= 0; other trees as they are."""
-    if isinstance(node, Call) and (found := knots(node)):
-        return _pieces(node.args[0], found)
+    """Return a call of a function with kinks as choices, for widths >= 0; other trees unchanged."""
+    if isinstance(node, Call) and (pairs := knots(node)):
+        return _pieces(node.args[0], pairs)
     if isinstance(node, Call) and node.function in RECORDS and RECORDS[node.function].choices:
         return rule(RECORDS[node.function].choices, node.args[0], node.args[-1])
     return node
 
 
-def _pieces(x: Expr, found: tuple[tuple[Expr, Expr], ...]) -> Expr:
-    """Return a table by halves: of 64 knots, no piece is behind more than six comparisons."""
-    if len(found) > 2:
-        n = len(found) // 2
-        return If(_pieces(x, found[: n + 1]), Cmp("<", x, found[n][0]), _pieces(x, found[n:]))
-    (a, y), (b, z) = (tuple(map(_plain, pair)) for pair in found)
+def _pieces(x: Expr, pairs: tuple[tuple[Expr, Expr], ...]) -> Expr:
+    """Return a table as choices by bisection: six comparisons lead to each piece of 64 knots."""
+    if len(pairs) > 2:
+        n = len(pairs) // 2
+        return If(_pieces(x, pairs[: n + 1]), Cmp("<", x, pairs[n][0]), _pieces(x, pairs[n:]))
+    (a, y), (b, z) = (tuple(map(_number, pair)) for pair in pairs)
     slope = div(add(z, neg(y)), add(b, neg(a)))
-    if (b, z) == (ZERO, ZERO):  # exact at the origin: rounding cannot give the wrong sign there
+    if (b, z) == (ZERO, ZERO):  # through the origin: rounding must not give the wrong sign there
         return mul(slope, x)
     return add(y, mul(slope, add(x, neg(a))))
 
@@ -239,24 +239,24 @@ def increasing(node: Node) -> Iterator[Cmp]:
     """Yield the conditions that knots of tables increase, except for numbers that do."""
     for part in walk(node):
         for (a, _), (b, _) in pairwise(knots(part)):
-            match _plain(a), _plain(b):
+            match _number(a), _number(b):
                 case Num(low), Num(high) if low < high:
                     continue
             yield Cmp("<", a, b)
 
 
-def _plain(node: Expr) -> Expr:
-    """Return a number with a minus as one number."""
+def _number(node: Expr) -> Expr:
+    """Return minus a number as one number; other trees unchanged."""
     return neg(node.arg) if isinstance(node, Neg) and isinstance(node.arg, Num) else node
 
 
 def kinks(node: Expr) -> Iterator[Cmp]:
-    """Yield the comparisons by which a function with kinks chooses its branch."""
+    """Yield the comparisons that choose the branches of a function with kinks."""
     yield from (part.condition for part in walk(choices(node)) if isinstance(part, If))
 
 
 def inserted(node: Expr, words: Mapping[str, Expr]) -> Expr:
-    """Return a tree with names replaced, its sums and products made anew."""
+    """Return a tree with names replaced, its sums and products simplified as here."""
     match node:
         case Sym(name):
             return words.get(name, node)
@@ -274,12 +274,11 @@ def inserted(node: Expr, words: Mapping[str, Expr]) -> Expr:
 
 
 def compared(node: Expr) -> Expr:
-    """Return an expression whose kinks are choices by comparisons."""
+    """Return an expression in which all kinks are choices by comparisons."""
     return choices(rebuild(node, compared))
 
 
 def is_affine(law: Expr, variables: Iterable[str]) -> bool:
     """Return whether a law is affine in some variables together."""
-    known = {*variables} & {*names(law)}
-    slopes = [derivative(law, name) for name in known]
-    return all(known.isdisjoint(names(slope)) for slope in slopes)
+    used = {*variables} & {*names(law)}
+    return all(used.isdisjoint(names(derivative(law, name))) for name in used)

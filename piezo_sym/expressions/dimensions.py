@@ -1,4 +1,4 @@
-"""Dimensions of laws: which parts must have equal units, and which do not.
+"""Dimensions of laws, and the rules of units that they obey or break.
 
 Input: a tree, and the dimension of each name in it.  Output: its dimension, and the `Match`es that
 fail.  A dimension is a vector of powers of the base units `BASES`, so the dimension of a
@@ -61,10 +61,10 @@ class Match:
 
     Attributes
     ----------
-    node : the smallest term in which they meet.
-    left : the part whose dimension is looked at.
+    node : the smallest term that contains both.
+    left : the part that is checked.
     right : the part that it must match; None if it must have the dimension `needed`.
-    needed : the dimension of left over right.
+    needed : the dimension that left over right must have.
     """
 
     node: Node
@@ -84,7 +84,7 @@ class Match:
         return _product(powers(self.left) or {}, right, Fraction(-1))
 
     def gap(self, words: Mapping[str, Dimension]) -> Dimension:
-        """Return what left over right would have to be multiplied by; `NONE` if they match."""
+        """Return the dimension missing from left over right; `NONE` if they match."""
         if powers(self.left) is None:
             return NONE
         return times(self.needed, of_powers(self.excess, words), -1)
@@ -113,7 +113,7 @@ def dimension(node: Expr, words: Mapping[str, Dimension]) -> Dimension | None:
 def powers(node: Expr) -> Powers | None:
     """Return the dimension of a tree as powers of its names, or None if it is zero and fits any.
 
-    Where parts must match, the first that does not fit any dimension speaks for all.
+    Of parts that must match, the first one that is not zero counts.
     """
     match node:
         case Num(value):
@@ -127,20 +127,20 @@ def powers(node: Expr) -> Powers | None:
         case If(then, _, other):
             return _first((then, other))
         case Mul(left, right):
-            return _joined(left, right, Fraction(1))
+            return _product_powers(left, right, Fraction(1))
         case Div(left, right):
-            return _joined(left, right, Fraction(-1))
+            return _product_powers(left, right, Fraction(-1))
         case Pow(base, exponent):
             return _raised(base, exponent)
         case Call(function, args):
-            return _called(function, args)
+            return _call_powers(function, args)
 
 
 def _first(parts: Iterable[Expr]) -> Powers | None:
     return next((found for found in map(powers, parts) if found is not None), None)
 
 
-def _joined(left: Expr, right: Expr, power: Fraction) -> Powers | None:
+def _product_powers(left: Expr, right: Expr, power: Fraction) -> Powers | None:
     first, second = powers(left), powers(right)
     return None if first is None or second is None else _product(first, second, power)
 
@@ -152,7 +152,7 @@ def _raised(base: Expr, exponent: Fraction) -> Powers | None:
     return None if inner is None else {name: power * exponent for name, power in inner.items()}
 
 
-def _called(function: str, args: tuple[Expr, ...]) -> Powers | None:
+def _call_powers(function: str, args: tuple[Expr, ...]) -> Powers | None:
     record = RECORDS[function]
     if record.units in {"pure", "none"}:
         return {}
@@ -162,7 +162,7 @@ def _called(function: str, args: tuple[Expr, ...]) -> Powers | None:
 
 
 def matches(node: Node) -> Iterator[Match]:
-    """Yield every rule that the tree's parts must keep, innermost first."""
+    """Yield every rule that the parts of a tree must obey, innermost first."""
     for part in children(node):
         yield from matches(part)
     match node:
@@ -186,15 +186,15 @@ def _equal(node: Node, parts: tuple[Expr, ...]) -> Iterator[Match]:
 
 
 def faults(rules: Iterable[Match], words: Mapping[str, Dimension]) -> tuple[Match, ...]:
-    """Return the rules that fail, one a term, but for those around a term that fails already."""
-    found: dict[Node, Match] = {}
+    """Return the rules that fail, one per term, without those whose parts contain a failed term."""
+    failed: dict[Node, Match] = {}
     for rule in rules:
-        if rule.gap(words) != NONE and not any(_around(rule, inner) for inner in found):
-            found.setdefault(rule.node, rule)
-    return tuple(found.values())
+        if rule.gap(words) != NONE and failed.keys().isdisjoint(_parts(rule)):
+            failed.setdefault(rule.node, rule)
+    return tuple(failed.values())
 
 
-def _around(rule: Match, inner: Node) -> bool:
-    """Return whether a rule's parts have a faulty term inside; their dimension is a guess."""
-    parts = (rule.node,) if rule.whole else children(rule.node)
-    return any(part == inner for top in parts for part in walk(top))
+def _parts(rule: Match) -> Iterator[Node]:
+    """Yield all parts of a rule's sides; if one of them fails, the sides' dimension is a guess."""
+    for side in (rule.node,) if rule.whole else children(rule.node):
+        yield from walk(side)

@@ -1,9 +1,9 @@
 """Energies of storage elements from their co-state laws, and co-states from energies.
 
-Input: a tree and a name.  Output: a tree, or None where an integral has no simple form.  Where two
-branches meet at the edge e, one of the antiderivatives has a constant added, so that both have one
-value there.  Where rules give none, the variable is the distance from the edge, which is positive
-on both sides: the logarithms and roots of an integral then are of what is positive.
+Input: a tree and a name.  Output: a tree, or None if an integral has no simple form.  Where two
+branches meet, at an edge, a constant is added to one of the antiderivatives, so that both have the
+same value there.  Where rules find no antiderivative, the variable is replaced by the distance from
+the edge: it is positive on both sides, and so are the arguments of logarithms and roots.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -41,9 +41,9 @@ from piezo_sym.expressions.tree import (
     walk,
 )
 
-#: Of higher powers no factors are taken apart.
+#: Whole powers up to this one are split into factors.
 MOST_FACTORS = 8
-#: Of more pieces, or pieces of more than MAX_PARTS, no energy is written: it is asked for.
+#: No energy is found for a law of more pieces, or of pieces of more than MAX_PARTS nodes.
 MOST_PIECES = 128
 Otherwise = Callable[[Expr, str, frozenset[str]], Expr | None]
 
@@ -54,32 +54,31 @@ def antiderivative(
     otherwise: Otherwise | None = None,
     positive: frozenset[str] = frozenset(),
 ) -> Expr | None:
-    """Return an antiderivative of `node` by `name`, or None where there is none of a simple form.
+    """Return an antiderivative of `node` by `name`, or None if it has no simple form.
 
-    Known forms are those of `integrals`, and choices between such where comparisons are affine.
+    Known forms are those of `integrals`, and choices between them by affine comparisons.
 
     Parameters
     ----------
-    otherwise : is asked for those of smooth branches of other forms, with the names that are
-        positive there.
-    positive : names that are; they decide how some edges are ordered.
+    otherwise : (smooth branch, name, positive names) -> an antiderivative where rules have none.
+    positive : names whose values are positive; they decide the order of some edges.
     """
     with suppress(NoFormError):
         return by_rules(node, name)
     plain = compared(node)
     condition = first_choice(plain)
     if isinstance(node, Add) and (condition or not otherwise):
-        found = [antiderivative(term, name, otherwise, positive) for term in _apart(node)]
-        known = [part for part in found if part is not None]
-        if len(known) == len(found):
+        terms = [antiderivative(term, name, otherwise, positive) for term in _split(node)]
+        known = [term for term in terms if term is not None]
+        if len(known) == len(terms):
             return add(*known)
     if condition is None:
         return otherwise(node, name, positive) if otherwise else None
     return _by_branches(plain, condition, name, otherwise, positive)
 
 
-def _apart(node: Add) -> Iterator[Expr]:
-    """Yield the terms of a sum that choose, and what is left of it."""
+def _split(node: Add) -> Iterator[Expr]:
+    """Yield the terms of a sum that have choices, then the sum of the smooth ones."""
     smooth = tuple(term for term in node.terms if first_choice(compared(term)) is None)
     yield from (term for term in node.terms if term not in smooth)
     if smooth:
@@ -87,7 +86,7 @@ def _apart(node: Add) -> Iterator[Expr]:
 
 
 def slope(energy: Expr, name: str) -> Expr:
-    """Return the derivative of an energy by `name`; each term with kinks is a choice of slopes."""
+    """Return the derivative of an energy by `name`, terms with kinks as choices of slopes."""
     if name not in names(energy):
         return ZERO
     if isinstance(energy, Add):
@@ -107,14 +106,14 @@ def _by_branches(
     otherwise: Otherwise | None,
     positive: frozenset[str],
 ) -> Expr | None:
-    """Return the antiderivative of a choice from those of what it chooses between."""
+    """Return the antiderivative of a choice by `condition` from those of its branches."""
     if sum(1 for _ in walk(node)) > MAX_PARTS or _pieces(node) > MOST_PIECES:
         return None
     difference = collected(condition.left, neg(condition.right))
     sides = tuple(decided(node, {condition: holds}) for holds in (True, False))
     if name not in names(difference):
-        found = _each(sides, name, otherwise, positive)
-        return If(found[0], condition, found[1]) if found else None
+        parts = _antiderivatives(sides, name, otherwise, positive)
+        return If(parts[0], condition, parts[1]) if parts else None
     slope = slope_of(difference, name)
     if slope is None:
         return None
@@ -124,25 +123,25 @@ def _by_branches(
     return None
 
 
-def _each(
-    parts: Iterable[Expr], name: str, otherwise: Otherwise | None, positive: frozenset[str]
+def _antiderivatives(
+    branches: Iterable[Expr], name: str, otherwise: Otherwise | None, positive: frozenset[str]
 ) -> tuple[Expr, ...]:
-    """Return the antiderivative of each of some trees; nothing if one has none, or a long one."""
-    found: list[Expr] = []
-    for part in parts:
-        own = antiderivative(part, name, otherwise, positive)
-        if own is None or _is_long(own):
+    """Return the antiderivative of each branch; nothing if one has none, or too long a one."""
+    results: list[Expr] = []
+    for branch in branches:
+        result = antiderivative(branch, name, otherwise, positive)
+        if result is None or _is_long(result):
             return ()
-        found.append(own)
-    return tuple(found)
+        results.append(result)
+    return tuple(results)
 
 
 @final
 @dataclass(frozen=True)
 class _Edge:
-    """Where a comparison that is affine in `name` turns: where `difference` of its sides is zero.
+    """The edge of a comparison that is affine in `name`: the zero of the `difference` of its sides.
 
-    `slope` is that of the difference, and `sides` the law where the comparison holds, and else.
+    `slope` is that of the difference; `sides` are the law where the comparison holds, and beyond.
     """
 
     condition: Cmp
@@ -153,31 +152,31 @@ class _Edge:
     positive: frozenset[str]
 
     def odd(self, otherwise: Otherwise | None) -> Expr | None:
-        """Return the antiderivative of what is odd about the edge: one of the distance from it."""
+        """Return the antiderivative of a law that is odd about the edge, as one of the distance."""
         above, below = self._outward()
         if above != below:
             return None
-        found = _each((above,), self.name, otherwise, self.positive | {self.name})
-        return self._at(found[0], Call("abs", (self.difference,))) if found else None
+        parts = _antiderivatives((above,), self.name, otherwise, self.positive | {self.name})
+        return self._by_name(parts[0], Call("abs", (self.difference,))) if parts else None
 
     def joined(self, otherwise: Otherwise | None) -> Expr | None:
-        """Return the antiderivative by those of the sides, by rules in the name itself.
+        """Return the antiderivatives of both sides, shifted to meet at the edge.
 
-        Or else in the distance from the edge, where `otherwise` may be asked.
+        They are found by rules in the name itself, or by `otherwise` in the distance from the edge.
         """
-        found = _each(self.sides, self.name, None, self.positive)
-        if not found and otherwise:
+        parts = _antiderivatives(self.sides, self.name, None, self.positive)
+        if not parts and otherwise:
             near = self.positive | {self.name}
-            found = _each(self._outward(), self.name, otherwise, near)
-            ways = self.difference, collected(neg(self.difference))
-            found = tuple(self._at(*pair) for pair in zip(found, ways, strict=False))
-            found = found if self._rises else found[::-1]
-        if not found:
+            parts = _antiderivatives(self._outward(), self.name, otherwise, near)
+            distances = self.difference, collected(neg(self.difference))
+            parts = tuple(self._by_name(*pair) for pair in zip(parts, distances, strict=False))
+            parts = parts if self._rises else parts[::-1]
+        if not parts:
             return None
         at = {self.name: self._place}
-        then, other = (tidied(settled(inserted(part, at), self.positive)) for part in found)
+        then, other = (tidied(settled(inserted(part, at), self.positive)) for part in parts)
         shift = ZERO if then == other else add(then, neg(other))
-        return If(found[0], self.condition, add(found[1], shift))
+        return If(parts[0], self.condition, add(parts[1], shift))
 
     @property
     def _rises(self) -> bool:
@@ -192,12 +191,12 @@ class _Edge:
             core = core.left
         return divided(neg(inserted(core, {self.name: ZERO})), derivative(core, self.name))
 
-    def _at(self, found: Expr, distance: Expr) -> Expr:
+    def _by_name(self, part: Expr, distance: Expr) -> Expr:
         """Return an antiderivative by the distance as one by the name."""
-        return divided(tidied(inserted(found, {self.name: distance})), self.slope)
+        return divided(tidied(inserted(part, {self.name: distance})), self.slope)
 
     def _outward(self) -> tuple[Expr, Expr]:
-        """Return the law above the edge, and minus that below, of the distance from the edge."""
+        """Return the law above the edge and minus that below, as functions of the distance."""
         above, below = map(self._shifted, self.sides if self._rises else self.sides[::-1])
         turned = neg(reflected(inserted(below, {}), self.name))
         near = self.positive | {self.name}
@@ -205,7 +204,7 @@ class _Edge:
         return inserted(one, {}), inserted(other, {})
 
     def _shifted(self, node: Expr) -> Expr:
-        """Return a law of the difference, which has the same name."""
+        """Return the law as a function of the difference, which takes over the name."""
         slope = slope_of(node, self.name)
         if slope is None:
             return rebuild(node, self._shifted)
@@ -214,7 +213,7 @@ class _Edge:
 
 
 def _pieces(node: Node) -> int:
-    """Return how many branches the choices of a tree make together, at most."""
+    """Return an upper bound on the number of branches of a tree."""
     if isinstance(node, If):
         return _pieces(node.condition) * (_pieces(node.then) + _pieces(node.other))
     return prod(map(_pieces, children(node)))
@@ -225,9 +224,9 @@ def _is_long(node: Node) -> bool:
 
 
 def without_common_factors(node: Expr, name: str) -> Expr:
-    """Return a product or quotient without factors of `name` above and below: sinh(x)/x*x.
+    """Return a product or quotient, common factors in `name` cancelled: sinh(x)/x*x.
 
-    These are polynomials, which have a value everywhere: of log(x)/log(x) nothing is left out.
+    Only polynomials are cancelled, since they have a value everywhere: log(x)/log(x) stays.
     """
     above, below = _factors(node)
     one: Expr = ONE
@@ -250,11 +249,12 @@ def _is_polynomial(node: Node) -> bool:
 
 
 def _factors(node: Expr) -> tuple[list[Expr], list[Expr]]:
-    """Return the factors above and below the line, whole powers a factor at a time."""
+    """Return the factors of numerator and denominator, those of whole powers one by one."""
     match node:
         case Mul(left, right) | Div(left, right):
-            (above, below), other = _factors(left), _factors(right)
-            more, less = other if isinstance(node, Mul) else other[::-1]
+            (above, below), (more, less) = _factors(left), _factors(right)
+            if isinstance(node, Div):
+                more, less = less, more
             return [*above, *more], [*below, *less]
         case Pow(base, exponent) if exponent.denominator == 1 and 0 < exponent <= MOST_FACTORS:
             above, below = _factors(base)

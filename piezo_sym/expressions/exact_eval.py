@@ -1,4 +1,4 @@
-"""Exact values of laws: rationals where all is rational, else balls that contain the value.
+"""Exact values of laws: rationals if all operands are rational, else balls that contain the value.
 
 Input: a tree and exact numbers.  Output: a `Fraction`, or a ball of FLINT's (``arb``), whose
 arithmetic is rigorous.  A witness is shown only after its law has been evaluated here.
@@ -53,13 +53,13 @@ class TooCloseError(ArithmeticError):
     """A sign that the precision does not decide, or a number too large to evaluate."""
 
 
-Value = Any  # what a law's value is: a Fraction, or an arb; in here fmpq takes the Fraction's place
+Value = Any  # a Fraction or an arb; inside this module fmpq takes the Fraction's place
 
 
 def value_of(node: Expr, values: Mapping[str, Value]) -> Value:
-    """Return the value of a law; see `evaluated`."""
-    found = evaluated(node, values)
-    return Fraction(int(found.p), int(found.q)) if isinstance(found, fmpq) else found
+    """Return the value of a law as a Fraction or a ball; see `evaluated`."""
+    value = evaluated(node, values)
+    return Fraction(int(value.p), int(value.q)) if isinstance(value, fmpq) else value
 
 
 def evaluate(node: Expr, values: Mapping[str, float]) -> float:
@@ -81,7 +81,7 @@ def evaluated(node: Expr, values: Mapping[Any, Value], bits: int = BITS) -> Valu
 
     Parameters
     ----------
-    values : of names; of sums over lanes, too, where there are any.
+    values : of names, and of sums over lanes.
     bits : precision of balls.
 
     Raises
@@ -89,13 +89,13 @@ def evaluated(node: Expr, values: Mapping[Any, Value], bits: int = BITS) -> Valu
     ArithmeticError, ValueError
         Where the law has no value (1/0, log(0)).
     TooCloseError
-        Where that, or a comparison, cannot be decided.
+        If the precision does not decide that, or a comparison.
     """
     with ctx.workprec(bits):
-        found = _value(node, values)
-    if not (isinstance(found, fmpq) or found.is_finite()):
+        value = _value(node, values)
+    if not (isinstance(value, fmpq) or value.is_finite()):
         raise TooCloseError
-    return found
+    return value
 
 
 def holds(condition: Cmp, values: Mapping[Any, Value], bits: int = BITS) -> bool:
@@ -121,7 +121,7 @@ def all_hold(conditions: Iterable[Cmp], values: Mapping[str, Value]) -> bool | N
 
 
 def differ(left: Value, right: Value) -> bool:
-    """Return whether two values are different for certain."""
+    """Return whether two values are certainly different."""
     with ctx.workprec(BITS):
         return bool(exact(left) != exact(right))
 
@@ -179,8 +179,8 @@ def _power(base: Value, exponent: Fraction) -> Value:
         size = abs(exponent.numerator)
         if isinstance(base, fmpq) and size * base.height_bits() > MOST_BITS:
             base = arb(base)
-        whole = base**size
-        return whole if exponent > 0 else _quotient(fmpq(1), whole)
+        power = base**size
+        return power if exponent > 0 else _quotient(fmpq(1), power)
     sign = _sign(base)
     if sign < 0 or (sign == 0 and exponent < 0):
         msg = "root of a negative number"
@@ -195,7 +195,7 @@ def _power(base: Value, exponent: Fraction) -> Value:
 
 
 def _raised(base: Value, exponent: Value) -> Value:
-    """Return a power of a number >= 0, the exponent positive."""
+    """Return a power of a number >= 0 with a positive exponent."""
     if _sign(exponent) != 1:
         raise ValueError("a power whose exponent is not positive")
     if _sign(base) < 0:
@@ -209,7 +209,7 @@ def _call(function: str, args: list[Value]) -> Value:
     record, z = RECORDS[function], args[0]
     if function in {"min", "max"} and not all(isinstance(arg, fmpq) for arg in args):
         return getattr(arb(z), function)(arb(args[-1]))
-    if not record.smooth:  # as the contracts have it, whatever the sign of a width
+    if not record.smooth:  # the formula holds for widths of either sign
         return _value(parse_rule(record.formula or record.choices), {"x": z, "w": args[-1]})
     if record.power is not None:
         return _power(z, record.power)
@@ -219,7 +219,7 @@ def _call(function: str, args: list[Value]) -> Value:
         raise ValueError(f"{function} of a number that is not positive")
     low, high = (isinstance(bound, Fraction) for bound in record.bounds)
     below, above = record.monotone and z > 0, record.monotone and z < 0
-    bounded = (low or below) and (high or above)  # far out on the side of z
+    bounded = (low or below) and (high or above)  # on the side of z: a large z is no problem
     if not (record.domain or abs(z) <= LARGEST_ARGUMENT or bounded):
         raise TooCloseError
     if record.known and isinstance(z, fmpq) and z == record.known[0]:

@@ -1,9 +1,8 @@
 """Text to a tree: the grammar of laws.
 
-Input: text, trusted in nothing.  Output: a tree, or a `RefusedError`.  Length, characters and
-nesting are checked first; then Python's own parser reads the text, and only the nodes of the law
-language pass.  Numbers are taken from the source text as exact rationals.  Python evaluates none of
-it.
+Input: untrusted text.  Output: a tree, or a `RefusedError`.  Length, characters and nesting are
+checked first; then Python's own parser reads the text, and only the nodes of the law language pass.
+Numbers are taken from the source text as exact rationals.  Nothing is evaluated by Python.
 """
 
 import ast
@@ -26,7 +25,7 @@ from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, 
 
 MAX_KNOTS = 64
 MAX_POWER = 16
-#: What functions are called elsewhere.
+#: Names of functions in other languages.
 ELSEWHERE = {"ln": "log", "arctan": "atan", "sgn": "sign", "fabs": "abs"}
 LARGEST = Fraction(10) ** MAX_MAGNITUDE
 SMALLEST = 1 / LARGEST
@@ -53,18 +52,18 @@ def read_condition(text: str) -> Cmp:
 
 @cache
 def parse_rule(text: str) -> Expr:
-    """Return the tree of a rule in a function's record, which needs no check of its size."""
+    """Return the tree of a trusted text, such as a rule in a function's record, of any size."""
     return read_law(text)
 
 
 @cache
 def parse_clause(text: str) -> tuple[Cmp, ...]:
-    """Return the comparisons of a fact in a function's record, of which one holds."""
+    """Return the comparisons of a fact in a function's record, at least one of which holds."""
     return tuple(read_condition(part.strip()) for part in text.split("|"))
 
 
 def _parsed(text: str) -> ast.expr:
-    """Return Python's own parse of a text that has passed the checks on its letters."""
+    """Return Python's syntax tree of a text, after checks of its characters and tokens."""
     check_letters(text)
     check_tokens(text)
     try:
@@ -78,7 +77,7 @@ def _parsed(text: str) -> ast.expr:
 
 
 def _expression(node: ast.expr, text: str, depth: int = 0) -> Expr:
-    """Return the tree of an allowed node; anything else is refused by what it is."""
+    """Return the tree of a node of Python's syntax; refuse what laws do not have."""
     if depth > MAX_DEPTH:
         raise RefusedError("is nested too deeply", f"at most {MAX_DEPTH} levels")
     match node:
@@ -128,7 +127,7 @@ def _binary(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth:
 
 
 def _sum(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth: int) -> Expr:
-    """Return ``a + b - c ...`` as one sum, without recursion: its length is no nesting."""
+    """Return ``a + b - c ...`` as one sum, without recursion: a long sum is not deep."""
     backwards: list[Expr] = []
     while True:
         term = _expression(right, text, depth)
@@ -140,7 +139,7 @@ def _sum(left: ast.expr, op: ast.operator, right: ast.expr, text: str, depth: in
     return Add(tuple(reversed(backwards)))
 
 
-#: Letters that no parameter can be meant by: a power of these is none of parameters alone.
+#: Letters of variables; exponents may have parameters only.
 LETTERS = frozenset({"i", "v", "f", "T"})
 
 
@@ -149,7 +148,7 @@ def _power(base: Expr, exponent: Expr) -> Expr:
         raise RefusedError("has a power that is not a number", "a small number, as in v**2")
     if names(exponent) and not isinstance(exponent, Neg) and _may_vanish(base):
         return Call("pow", (base, exponent))
-    if names(exponent):  # of a positive base; of what has a unit, exp and log say so
+    if names(exponent):  # the base is positive; log refuses one that has a unit
         return Call("exp", (Mul(exponent, Call("log", (base,))),))
     value = _rational(exponent)
     if value is None or max(abs(value.numerator), value.denominator) > MAX_POWER:
@@ -158,7 +157,7 @@ def _power(base: Expr, exponent: Expr) -> Expr:
 
 
 def _may_vanish(base: Expr) -> bool:
-    """Return whether a factor chooses, as abs(f/f_0) does: the power is 0 where its base is."""
+    """Return whether a factor has kinks, as abs(f/f_0), so that the base of a power may be 0."""
     match base:
         case Mul(left, right):
             return _may_vanish(left) or _may_vanish(right)

@@ -31,12 +31,12 @@ from piezo_sym.expressions.tree import (
 #: The coefficients of a polynomial, by power.
 Polynomial = dict[int, Expr]
 
-#: Products of polynomials are written out up to this size; beyond, no energy is found.
+#: The most nodes to which products of polynomials are expanded; beyond, no energy is found.
 MAX_PARTS = 20_000
 
 
 class NoFormError(Exception):
-    """A law has no antiderivative by rules, or is no polynomial."""
+    """The rules find no antiderivative of a law, or it is no polynomial."""
 
 
 def by_rules(node: Expr, name: str) -> Expr:
@@ -48,7 +48,7 @@ def by_rules(node: Expr, name: str) -> Expr:
     Raises
     ------
     NoFormError
-        Where there is none of a simple form.
+        If the law has none of these forms.
     """
     if name not in names(node):
         return mul(node, Sym(name))
@@ -71,8 +71,8 @@ def by_rules(node: Expr, name: str) -> Expr:
             slope = None if any(name in names(w) for w in rest) else slope_of(arg, name)
             if slope is None:
                 raise NoFormError
-            whole = rule(RECORDS[function].integral, arg, rest[0] if rest else ZERO, node)
-            return divided(whole, slope)
+            integral = rule(RECORDS[function].integral, arg, rest[0] if rest else ZERO, node)
+            return divided(integral, slope)
     with suppress(NoFormError):
         return _power_rule(node, name)
     degree, raised = _degree(node, name)
@@ -82,7 +82,7 @@ def by_rules(node: Expr, name: str) -> Expr:
 
 
 def _degree(node: Expr, name: str) -> tuple[Fraction, tuple[Expr, ...]]:
-    """Return the n of a product c*x**n, x > 0: a number, and what exponents w > 0 add to it.
+    """Return n of a product c*x**n, x > 0: a number, and the terms that exponents w > 0 add to it.
 
     Raises
     ------
@@ -133,13 +133,13 @@ def _polynomial_rule(node: Expr, name: str) -> Expr:
     """Return the integral of a polynomial that is not written as a sum of powers."""
     terms = _polynomial(node, name)
     raised = {n: mul(terms[n], power(Sym(name), Fraction(n + 1))) for n in sorted(terms)}
-    return add(*(_shared(term, n + 1) for n, term in raised.items()))
+    return add(*(_quotient(term, n + 1) for n, term in raised.items()))
 
 
-def _shared(term: Expr, number: int) -> Expr:
+def _quotient(term: Expr, number: int) -> Expr:
     """Return ``term/number`` written as a quotient, the sign in front."""
     if isinstance(term, Neg):
-        return neg(_shared(term.arg, number))
+        return neg(_quotient(term.arg, number))
     return term if number == 1 else Div(term, Num(Fraction(number)))
 
 
@@ -164,7 +164,7 @@ def _polynomial(node: Expr, name: str) -> Polynomial:
 
 
 def _raised(part: Polynomial, times: int) -> Polynomial:
-    """Return a power of a polynomial, one of two terms by the binomial theorem."""
+    """Return a power of a polynomial; if it has two terms, by the binomial theorem."""
     if len(part) != 2:
         return reduce(_product_of, [part] * times)
     (low, a), (high, b) = part.items()
@@ -211,7 +211,7 @@ def divided(top: Expr, slope: Expr) -> Expr:
 
 
 def slope_of(node: Expr, name: str) -> Expr | None:
-    """Return a where node = a*x + b with a, b free of x, else None."""
+    """Return a != 0 if node = a*x + b with a, b free of x, else None."""
     if not _smooth(node):
         return None
     slope = derivative(node, name)
@@ -219,7 +219,7 @@ def slope_of(node: Expr, name: str) -> Expr | None:
 
 
 def _divides_well(slope: Expr | None) -> bool:
-    """Return whether dividing by a slope divides by no name."""
+    """Return whether a quotient by this slope has no name in its denominator."""
     return isinstance(slope, Num) or (isinstance(slope, Div) and isinstance(slope.left, Num))
 
 

@@ -8,7 +8,7 @@ import re
 from piezo_sym.errors import quote
 
 LANGUAGE = "numbers, names, + - * / **, (), 'a if x < y else b', or a function as in exp(x)"
-#: What to write instead of characters that are in other languages.
+#: What to write instead of characters of other languages.
 REMEDIES = {
     "^": "write ** for a power",
     "=": "write >= or <= in a condition",
@@ -16,7 +16,7 @@ REMEDIES = {
     "|": "write abs(v)",
     "&": "write each condition as one of its own",
 }
-#: Operators that go by elements elsewhere: a law is one number already.
+#: Elementwise operators of other languages.
 DOTTED = {".*": "*", "./": "/", ".^": "**"}
 MAX_DEPTH = 40
 MAX_DIGITS = 40
@@ -33,7 +33,7 @@ TOKEN = re.compile(
 
 
 class RefusedError(Exception):
-    """Why a text is no law; whoever knows its place in the spec makes a `SpecError` of it."""
+    """The reason why a text is no law; the caller, which knows its place, raises a `SpecError`."""
 
     def __init__(self, what: str, expected: str = "", remedy: str = "") -> None:
         super().__init__(what)
@@ -55,7 +55,7 @@ def check_letters(text: str) -> None:
 
 
 def check_tokens(text: str) -> None:
-    """Refuse what is no token of the law language, and nesting beyond what a person writes."""
+    """Refuse characters that form no token of the law language, and deep nesting."""
     position = depth = prefixes = 0
     while position < len(text):
         match = TOKEN.match(text, position)
@@ -73,14 +73,14 @@ def check_tokens(text: str) -> None:
 
 
 def _remedy(odd: str) -> str:
-    """Return what to write instead of two characters of which the first is no token."""
+    """Return what to write instead of two characters, the first of which begins no token."""
     if odd in DOTTED:
         return f"write {DOTTED[odd]} for {odd}"
     return REMEDIES.get(odd[0], "")
 
 
 def _prefixes(count: int, match: re.Match[str]) -> int:
-    """Return how many operators stand in a row, spaces aside."""
+    """Return the number of operators in a row after one more token, spaces aside."""
     if match.lastgroup == "space":
         return count
     return count + 1 if match.group() in {"+", "-", "*", "/", "**"} else 0

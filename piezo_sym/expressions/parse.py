@@ -1,7 +1,6 @@
 """Text of a law to a checked tree.
 
-Input: text from a user.  Output: a tree, or a `SpecError` that says what is wrong, where, what is
-expected and what to do.
+Input: text from a user.  Output: a tree, or a `SpecError`.
 """
 
 from collections.abc import Callable

@@ -1,7 +1,7 @@
 """Laws mirrored in their variable: W(-z), with signs brought to the front.
 
-Input: a law and its letter.  Output: a tree in which functions of odd and even parity meet the same
-argument as in the law itself, so that W(z) + W(-z) cancels by its form where it can.
+Input: a law and its letter.  Output: a tree in which odd and even functions have the same arguments
+as in the law itself, so that W(z) + W(-z) of an odd law cancels term by term.
 """
 
 from piezo_sym.expressions.calculus import add, div, mul, neg, power
@@ -10,12 +10,12 @@ from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, 
 
 
 def reflected(law: Expr, letter: str) -> Expr:
-    """Return a law with its letter's sign turned.
+    """Return a law with the sign of its letter changed.
 
     Raises
     ------
     ZeroDivisionError
-        If a divisor is zero by its form.
+        If a divisor simplifies to zero.
     """
 
     def turned(node: Expr) -> Expr:
@@ -40,21 +40,21 @@ def reflected(law: Expr, letter: str) -> Expr:
             return power(inner, exponent)
         case Call(function, (first, *others)):
             inner, rest = turned(first), tuple(map(turned, others))
-            if isinstance(inner, Neg) and knots(law):  # y(-x) is minus what has the mirrored knots
+            if isinstance(inner, Neg) and knots(law):  # y(-x) is minus the table of -x_k, -y_k
                 mirrored = (neg(turned(part)) for pair in reversed(knots(law)) for part in pair)
                 return neg(Call(function, (inner.arg, *mirrored)))
             parity = RECORDS[function].parity
             if not isinstance(inner, Neg) or not parity:
                 return Call(function, (inner, *rest))
-            made = Call(function, (inner.arg, *rest))
-            return neg(made) if parity == "odd" else made
+            call = Call(function, (inner.arg, *rest))
+            return neg(call) if parity == "odd" else call
         case If(then, Cmp(op, left, right), other):
             return If(turned(then), Cmp(op, turned(left), turned(right)), turned(other))
     return law
 
 
 def _sum(terms: tuple[Expr, ...]) -> Expr:
-    """Return a sum; minus a sum where each term has a minus."""
+    """Return a sum, with one minus in front if each term has a minus."""
     if all(isinstance(term, Neg) for term in terms):
         return neg(add(*(neg(term) for term in terms)))
     return add(*terms)

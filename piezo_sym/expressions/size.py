@@ -1,6 +1,6 @@
-"""How large a law becomes in later stages, computed before they run.
+"""The size of a law in later stages, bounded before they run.
 
-Input: the tree of a law.  Output: nothing, or a `RefusedError`.  Proofs multiply laws out and write
+Input: the tree of a law.  Output: nothing, or a `RefusedError`.  Proofs expand laws and write
 functions with kinks branch by branch, so a short text can need unbounded time and memory there.
 """
 
@@ -77,13 +77,13 @@ def _check_numbers(tree: Expr) -> None:
 
 
 def _nested(node: Expr | Cmp) -> int:
-    """Return how many functions and roots stand in each other at most."""
+    """Return how deeply functions and roots are nested."""
     own = isinstance(node, Call) or (isinstance(node, Pow) and node.exponent.denominator > 1)
     return int(own) + max((_nested(part) for part in children(node)), default=0)
 
 
 def _magnitude(node: Expr | Cmp) -> float:
-    """Return the largest power of ten, either sign, of the numbers in a law multiplied together."""
+    """Return a bound on the power of ten, of either sign, of products of the numbers in a law."""
     parts = [_magnitude(part) for part in children(node)]
     match node:
         case Num(value):
@@ -96,7 +96,7 @@ def _magnitude(node: Expr | Cmp) -> float:
 
 
 def _digits(node: Expr | Cmp) -> float:
-    """Return how many digits the numbers in a law have together, in sums over one denominator."""
+    """Return a bound on the digits of the numbers in a law, sums over a common denominator."""
     parts = [_digits(part) for part in children(node)]
     match node:
         case Num(value):
@@ -111,30 +111,31 @@ def _log(value: int) -> float:
 
 
 def _most_branches(tree: Expr) -> int:
-    """Return how many branches the largest function with kinks, or choice, has in a law.
+    """Return the most branches that a function with kinks, or a condition, has in a law.
 
-    What stands in a condition is written out branch by branch, and so is all that chooses there.
+    Both are written out branch by branch, with all choices inside them.
     """
-    kinked = [part for part in walk(tree) if isinstance(part, Cmp) or _kinks(part) > 1]
+    kinked = [part for part in walk(tree) if isinstance(part, Cmp) or _own_branches(part) > 1]
     return max((_branches(part) for part in kinked if not _plain_table(part)), default=1)
 
 
 def _plain_table(node: Expr | Cmp) -> bool:
-    """Return whether a tree is a table of arguments without kinks: it may have all its pieces."""
+    """Return whether a tree is a table of smooth arguments, which may have many pieces."""
     return bool(knots(node)) and all(_branches(part) == 1 for part in children(node))
 
 
-def _kinks(node: Expr | Cmp) -> int:
+def _own_branches(node: Expr | Cmp) -> int:
+    """Return the number of branches of a function, its arguments aside; 1 for other nodes."""
     return RECORDS[node.function].branches(len(node.args)) if isinstance(node, Call) else 1
 
 
 def _branches(node: Expr | Cmp) -> int:
-    """Return how many branches an expression has when it is written as one choice."""
+    """Return the number of branches of an expression that is written as one choice."""
     if isinstance(node, If):
         parts = _branches(node.then) + _branches(node.other)
     else:
         parts = math.prod(map(_branches, children(node)))
-    conditions = _branches(node.condition) if isinstance(node, If) else _kinks(node)
+    conditions = _branches(node.condition) if isinstance(node, If) else _own_branches(node)
     return min(parts * conditions, MAX_BRANCHES + 1)
 
 
@@ -154,7 +155,7 @@ def _degree(node: Expr | Cmp) -> Fraction:
 @final
 @dataclass(frozen=True)
 class _Extent:
-    """How many terms a law has when multiplied out, the most of any part, and its divisors."""
+    """The number of terms of an expanded law, the most of any part, and its divisors' terms."""
 
     own: int
     most: int
@@ -189,7 +190,7 @@ def _extent(node: Expr | Cmp) -> _Extent:
 
 
 def _factors(node: Expr | Cmp) -> int:
-    """Return of how many factors a law is the product: the terms of its logarithm."""
+    """Return the number of factors of a law, which are the terms of its logarithm."""
     match node:
         case Mul(left, right) | Div(left, right):
             return _factors(left) + _factors(right)

@@ -25,7 +25,7 @@ from piezo_sym.expressions.tree import (
     Sym,
 )
 
-# Binding strength of what a piece of text is, weakest first.
+# Binding strengths of the outermost operator of a text, weakest first.
 CHOICE, SUM, PRODUCT, UNARY, POWER, ATOM = range(6)
 
 MAX_PLAIN = 24  # longer numbers are written with an exponent
@@ -44,7 +44,7 @@ def compared(left: Piece, op: str, right: Piece) -> str:
 class Style:
     """How one language writes the parts of a tree.
 
-    Each function gets its operands' `Piece` values, and gives a `Piece` back.
+    Each function takes the `Piece`s of its operands.
     """
 
     number: Callable[[Fraction], Piece]
@@ -110,7 +110,7 @@ def _sum(terms: tuple[Expr, ...], style: Style) -> str:
 
 
 def signed(term: Expr) -> tuple[str, Expr]:
-    """Return the sign and the size of a term of a sum."""
+    """Return the sign and the magnitude of a term of a sum."""
     match term:
         case Neg(arg):
             return "-", arg
@@ -134,7 +134,7 @@ def decimal(value: Fraction) -> str | None:
 
 
 def scientific(value: Fraction) -> str | None:
-    """Return an exact spelling such as ``1.5e-30`` of a positive rational, or None if none."""
+    """Return an exact spelling such as ``1.5e-30`` of a positive rational, or None."""
     scale = 0
     while (value * 10**scale).denominator != 1 and scale <= MAX_PLACES:
         scale += 1

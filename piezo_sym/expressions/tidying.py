@@ -1,4 +1,4 @@
-"""Trees made shorter: like terms added up, choices taken that signs of names decide.
+"""Simplification of trees: like terms added up, choices taken that signs of names decide.
 
 Input: a tree.  Output: a tree of the same value.
 """
@@ -52,7 +52,10 @@ def tidied(node: Expr) -> Expr:
 
 
 def settled(node: Expr, positive: Collection[str]) -> Expr:
-    """Return a tree without choices by comparisons that are decided whatever its names are."""
+    """Return a tree with each choice taken that holds for all values of its names, or for none.
+
+    `positive` are the names whose values are positive.
+    """
     inner = rebuild(node, lambda part: settled(part, positive))
     match inner:
         case If(then, Cmp(op, left, right), other):

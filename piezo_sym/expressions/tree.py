@@ -1,8 +1,8 @@
 """The small tree in which laws are kept, from the spec to the printers.
 
 Input: nothing; these are the types.  Output: frozen nodes, and the walks that every stage shares:
-which names occur, renaming, replacement.  A tree is data: it cannot execute.
-`LaneSum` never comes from a spec; lowering makes it for the sums over a bank's lanes.
+which names occur, renaming, replacement.  A tree is data: it cannot execute.  A `LaneSum` never
+comes from a spec; lowering makes it for sums over the lanes of a bank.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Kind = TypeVar("Kind")
 
 
 class _Tree:
-    """Base of all nodes; it keeps the hash, since deep trees are keys of many dictionaries."""
+    """Base of all nodes; it caches the hash, since deep trees are keys of many dictionaries."""
 
     __slots__ = ("_hash",)
 
@@ -27,18 +27,18 @@ class _Tree:
 @dataclass_transform(frozen_default=True)
 def _node(kind: type[Kind]) -> type[Kind]:
     """Return a frozen dataclass whose hash is computed once."""
-    made: Any = dataclass(frozen=True, slots=True)(kind)
-    computed = made.__hash__
+    node: Any = dataclass(frozen=True, slots=True)(kind)
+    computed = node.__hash__
 
-    def kept(self: _Tree) -> int:
+    def cached(self: _Tree) -> int:
         if not hasattr(self, "_hash"):
             object.__setattr__(self, "_hash", computed(self))
         return self._hash  # type: ignore[attr-defined, no-any-return]
 
-    parts = tuple(made.__dataclass_fields__)
-    made.__hash__ = kept
-    made.__reduce__ = lambda self: (made, tuple(getattr(self, part) for part in parts))
-    return cast(type[Kind], made)
+    parts = tuple(node.__dataclass_fields__)
+    node.__hash__ = cached
+    node.__reduce__ = lambda self: (node, tuple(getattr(self, part) for part in parts))
+    return cast(type[Kind], node)
 
 
 @final
@@ -145,27 +145,26 @@ ZERO, ONE = Num(Fraction(0)), Num(Fraction(1))
 
 
 def knots(node: Node) -> tuple[tuple[Expr, Expr], ...]:
-    """Return the knots (x_k, y_k) of a table; none of what is no table."""
-    if not (isinstance(node, Call) and node.function in FUNCTIONS):
-        return ()
-    known = FUNCTIONS[node.function].knots
-    return tuple(zip(node.args[1::2], node.args[2::2], strict=True)) if known else ()
+    """Return the knots (x_k, y_k) of a table; an empty tuple for any other node."""
+    if isinstance(node, Call) and node.function in FUNCTIONS and FUNCTIONS[node.function].knots:
+        return tuple(zip(node.args[1::2], node.args[2::2], strict=True))
+    return ()
 
 
 def children(node: Node) -> tuple[Node, ...]:
     """Return the direct parts of `node`, from left to right."""
-    found: list[Node] = []
+    parts: list[Node] = []
     for field in node.__slots__:
         part = getattr(node, field)
         if isinstance(part, _Tree):
-            found.append(cast(Node, part))
+            parts.append(cast(Node, part))
         elif isinstance(part, tuple):
-            found += part
-    return tuple(found)
+            parts += part
+    return tuple(parts)
 
 
 def walk(node: Node) -> Iterator[Node]:
-    """Yield `node` and all that is in it, outermost first, from left to right."""
+    """Yield `node` and all its parts, outermost first, from left to right."""
     stack: list[Node] = [node]
     while stack:
         top = stack.pop()
@@ -195,9 +194,9 @@ def rebuild(node: Expr, change: Callable[[Expr], Expr]) -> Expr:
 
 
 def first_choice(node: Node) -> Cmp | None:
-    """Return the comparison that is decided first where a tree is evaluated, outside all branches.
+    """Return the comparison that has to be decided first when a tree is evaluated, if any.
 
-    What guards a branch is decided before anything inside it.
+    The condition of a branch is decided before those inside the branch.
     """
     if isinstance(node, If):
         return first_choice(node.condition) or node.condition
@@ -205,7 +204,7 @@ def first_choice(node: Node) -> Cmp | None:
 
 
 def decided(node: Expr, known: Mapping[Cmp, bool]) -> Expr:
-    """Return a tree with the choices taken whose comparison is `known`."""
+    """Return a tree with the choices taken whose comparisons are `known`."""
     if isinstance(node, If) and node.condition in known:
         return decided(node.then if known[node.condition] else node.other, known)
     return rebuild(node, lambda part: decided(part, known))

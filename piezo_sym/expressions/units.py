@@ -1,4 +1,4 @@
-"""Unit strings: products of powers in the law language, of names that pint knows.
+"""Unit strings: products of powers, in the law language, of names that pint knows.
 
 Input: text such as ``N*s/m``.  Output: a `Unit`, its exact factor to coherent SI and its dimension.
 Powers are up to 9, whole (``m**2``) or rational (``N/(m/s)**(1/2)``); ``1`` is the unit of a pure
@@ -6,7 +6,7 @@ number.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -27,13 +27,13 @@ Terms = list[tuple[str, Fraction]]
 MAX_UNIT = 60
 ATOM = "[A-Za-z]+"
 PLAIN = re.compile(r"[A-Za-z0-9*/^()-]+")
-#: How letters beyond ASCII are written: micro (two letters that look alike), ohm (two), degrees.
+#: Spellings in ASCII: of micro (two characters that look alike), ohm (two), degrees, powers.
 ASCII = str.maketrans(
     {"\u00b5": "u", "\u03bc": "u", "\u03a9": "ohm", "\u2126": "ohm", "\u00b0": "deg"}
     | {"\u00b7": "*", "\u00b2": "**2", "\u00b3": "**3"}
 )
 COMMON = ("m", "kg", "s", "A", "K", "N", "J", "W", "V", "C", "F", "H", "Wb", "ohm", "Hz", "Pa")
-#: Powers of kg, m, s, A, K, as the SI defines its units; pint, which has the others, loads slowly.
+#: Coherent units as powers of kg, m, s, A, K, mol; pint, which knows the others, loads slowly.
 COHERENT = {
     "1": (), "kg": (1,), "m": (0, 1), "s": (0, 0, 1), "A": (0, 0, 0, 1), "K": (0, 0, 0, 0, 1),
     "N": (1, 1, -2), "Pa": (1, -1, -2), "J": (1, 2, -2), "W": (1, 2, -3), "Hz": (0, 0, -1),
@@ -41,15 +41,15 @@ COHERENT = {
     "S": (-1, -2, 3, 2), "Wb": (1, 2, -2, -1), "T": (1, 0, -2, -1), "H": (1, 2, -2, -2),
     "mol": (0, 0, 0, 0, 0, 1), "rad": (),
 }  # fmt: skip
-#: The prefixes of these that are known without pint, and their powers of ten.
+#: Prefixes of these that need no pint, and their powers of ten.
 PREFIXES = {"p": -12, "n": -9, "u": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
-#: The units known, by pint's long names; SI prefixes go with each.
+#: The units of specs, by pint's long names; each may have an SI prefix.
 _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
     farad ohm siemens weber tesla henry radian degree turn revolutions_per_minute minute hour day
     liter bar metric_ton inch foot pound electron_volt degree_Celsius degree_Fahrenheit decibel
     neper count percent"""
 UNITS = frozenset(_UNITS.split())
-#: What pint calls the dimensions of the base units.
+#: Pint's names for the dimensions of the base units.
 _DIMENSIONS = "mass length time current temperature substance luminosity"
 DIMENSIONS = dict(zip(BASES, (f"[{name}]" for name in _DIMENSIONS.split()), strict=True))
 
@@ -62,8 +62,8 @@ class Unit:
     Attributes
     ----------
     text : as the spec writes it.
-    si : the coherent SI unit in its place, such as ``F`` for ``uF``.
-    factor : exact; a value in this unit times it is the value in coherent SI.
+    si : the coherent SI unit of the same dimension, such as ``F`` for ``uF``.
+    factor : exact; a value in this unit times `factor` is the value in coherent SI.
     dimension : powers of kg, m, s, A, K, mol, cd.
     """
 
@@ -75,9 +75,13 @@ class Unit:
 
 def base_units(dimension: tuple[Fraction, ...]) -> str:
     """Return a dimension in SI base units, such as ``kg*m/s**2``."""
-    powers = list(zip(BASES, dimension, strict=True))
-    above = [raised(name, p) for name, p in powers if p > 0]
-    below = [raised(name, -p) for name, p in powers if p < 0]
+    return product_text(tuple(zip(BASES, dimension, strict=True)))
+
+
+def product_text(powers: Sequence[tuple[str, Fraction | int]]) -> str:
+    """Return a product of powers of units as text, those with negative powers last."""
+    above = [raised(name, power) for name, power in powers if power > 0]
+    below = [raised(name, -power) for name, power in powers if power < 0]
     return "/".join(["*".join(above) or "1", *below])
 
 
@@ -89,7 +93,7 @@ def raised(name: str, power: Fraction | int) -> str:
 
 
 def parse_unit(text: str, where: str = "unit", value: float | None = None) -> Unit:
-    """Return the unit that `text` names; `value` is what is given in it, for the message.
+    """Return the unit that `text` names; `value` is a value in it, for the message.
 
     Raises
     ------
@@ -109,7 +113,7 @@ def _known(text: str) -> Unit:
 
 def _read(text: str, where: str, value: float | None) -> Unit:
     if (plain := text.translate(ASCII)) != text and plain.isascii():
-        _read(plain, where, value)  # a unit that is refused in ASCII, too, says why
+        _read(plain, where, value)  # raises if the unit is wrong in ASCII, too
         raise SpecError(f"{quote(text)} is not ASCII", where, "a unit", f"write {quote(plain)}")
     factor, dimension = Fraction(1), [Fraction(0)] * len(BASES)
     found = _terms(text, where)
@@ -150,13 +154,13 @@ def _terms(text: str, where: str) -> Terms:
 
 
 def _parsed(text: str) -> Terms:
-    """Read a unit as a law; names are marked, for `in` and `as` are words of Python."""
+    """Read a unit as a law; names get an underscore, since `in` and `as` are keywords of Python."""
     if len(text) > MAX_UNIT or not PLAIN.fullmatch(text):
         raise RefusedError("is not a unit")
-    found = _powers(parse_rule(re.sub(ATOM, r"_\g<0>", text.replace("^", "**"))))
-    if any(max(abs(power.numerator), power.denominator) > 9 for _, power in found):
+    terms = _powers(parse_rule(re.sub(ATOM, r"_\g<0>", text.replace("^", "**"))))
+    if any(max(abs(power.numerator), power.denominator) > 9 for _, power in terms):
         raise RefusedError("has too large a power")
-    return found
+    return terms
 
 
 def _powers(tree: Expr) -> Terms:
@@ -196,8 +200,8 @@ def _registry() -> Any:
 def _named(name: str, where: str, value: float | None, alone: bool = True, text: str = "") -> Unit:
     """Return one named unit of a text; its coherent spelling drops the prefix (``uF`` gives ``F``).
 
-    One with an offset is a temperature if it stands alone; else it is a difference of them, as in
-    W/degC.
+    A unit with an offset is a temperature if it stands `alone`, otherwise a temperature difference,
+    as in W/degC.
     """
     prefix = name[:1] if name[1:] in COHERENT.keys() - {"1", "kg"} else ""
     if name in COHERENT or prefix in PREFIXES:
@@ -227,7 +231,7 @@ def _named(name: str, where: str, value: float | None, alone: bool = True, text:
 
 
 def _meant(name: str, text: str) -> str:
-    """Return what to write for a name that is none: N*s/m for Ns/m, else a name that is like it."""
+    """Return what to write for an unknown name: N*s/m for Ns/m, else a similar name."""
     cuts = ((name[:n], name[n:]) for n in range(1, len(name)))
     two = next((f"{a}*{b}" for a, b in cuts if a in COMMON and b in COMMON), "")
     text = re.sub(rf"/{name}(?![A-Za-z])", f"/({two})", text)
@@ -242,7 +246,7 @@ def _meant(name: str, text: str) -> str:
 
 
 def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:
-    """Return the coherent unit behind a named one: itself, itself without prefix, or its bases."""
+    """Return the coherent unit of a named one: itself, itself without prefix, or base units."""
     if factor == 1:
         return name
     registry = _registry()

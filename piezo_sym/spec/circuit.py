@@ -39,7 +39,7 @@ B = TypeVar("B", bound=Port)
 @final
 @dataclass(frozen=True)
 class Placed:
-    """A port where it stands: its element, and the bank of whose lanes this is in one, if any."""
+    """A port with its element, and with the bank of which it stands in one lane, if any."""
 
     element: str
     bank: str | None
@@ -56,7 +56,7 @@ class Circuit:
     model : the spec they come from.
     ports : in declaration order.
     names : every name in use: parameters, inputs, states, bank sizes and the ports' quantities.
-    chains : of the banks whose lanes are in series, the ends of all together.
+    chains : the two ends of the chain of each bank whose lanes are in series.
     """
 
     model: Model
@@ -87,7 +87,7 @@ class Circuit:
 
     @cached_property
     def pumped(self) -> dict[str, Branch]:
-        """The branches of bodies that couplings carry entropy in and out of, by element."""
+        """The branch of each body that a coupling carries entropy into or out of, by element."""
         pairs = (p.second for _, p in self.of(Coupling) if p.second_domain == THERMAL)
         nodes = {node for pair in pairs for node in pair}
         branches = {name: (body_node(name), THERMAL.reference) for name in self._bodies}
@@ -99,7 +99,7 @@ class Circuit:
 
 
 def circuit_of(model: Model) -> Circuit:
-    """Return the circuit of a model, its quantities named apart from every name of the spec."""
+    """Return the circuit of a model; no quantity in it has a name that the spec uses."""
     heat = {body: word for word, body in temperatures(model).items()}
     laws = {
         name: {law.field: in_words(model, law, heat) for law in element.laws(name)}
@@ -108,27 +108,24 @@ def circuit_of(model: Model) -> Circuit:
     taken = {*heat.values(), *model.parameters, *model.inputs, *model.elements}
     taken |= {f"{bank}_count" for bank in banks(model)}
     placed = [
-        Placed(name, element.bank_of(name), _in_lane(name, element, port))
+        Placed(name, element.bank_of(name), _between_lane_ends(name, element, port))
         for name, element in model.elements.items()
         for port in element.ports(name)
     ]
     taken |= {p.port.state for p in placed if isinstance(p.port, Storage | Body)}
-    named = []
-    for entry in placed:
-        port = _named(entry, taken, heat, laws[entry.element])
-        named.append(replace(entry, port=port))
+    named = [replace(p, port=_with_names(p, taken, heat, laws[p.element])) for p in placed]
     chains = {bank: model.elements[name].chain for name, bank in bank_of(model).items()}
     ends = {bank: pair for bank, pair in chains.items() if pair}
     return Circuit(model, tuple(named), frozenset(taken), ends)
 
 
 def lane_ends(bank: str) -> Branch:
-    """Return the ends of each lane in a chain; the second is where its across variables are 0."""
+    """Return the two end nodes of a lane in a chain; the second is its reference node."""
     return f"{bank}:first", f"{bank}{LAST}"
 
 
-def _in_lane(name: str, element: Element, port: Port) -> Port:
-    """Return a port between its lane's own ends, if lanes are in series."""
+def _between_lane_ends(name: str, element: Element, port: Port) -> Port:
+    """Return a port, moved between the ends of its lane if the lanes are in series."""
     if element.chain is None or not isinstance(port, Storage | DissipativePort):
         return port
     ends = dict(zip(element.chain, lane_ends(element.bank_of(name) or ""), strict=True))
@@ -140,10 +137,13 @@ def _in_lane(name: str, element: Element, port: Port) -> Port:
     return replace(port, branch=(first, second))
 
 
-def _named(
+def _with_names(
     entry: Placed, taken: set[str], heat: Mapping[str, str], laws: Mapping[str, Expr]
 ) -> Port:
-    """Return the port with names that nothing else has, its laws in the words of [domain]."""
+    """Return the port with unused names for its quantities, and with `laws` in place of its own.
+
+    `heat` is the temperature symbol of each body; new names are added to `taken`.
+    """
 
     def new(base: str) -> str:
         name = fresh(base, taken)

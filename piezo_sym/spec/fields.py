@@ -1,7 +1,7 @@
 """The tables of a spec, field by field, as frozen pydantic types.
 
 Input: TOML data or Python arguments.  Output: `Header`, `Parameter`, `Input`, `Domain`, `Bank`,
-`Component` and the type of an element, each right in itself; what holds between them is `check`'s.
+`Component` and the type of an element, each checked by itself; `checks` compares them.
 """
 
 import math
@@ -44,19 +44,19 @@ def _number(value: Any) -> float:
 
 
 def _text_or(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """Return what reads a value, but leaves a text as it is."""
+    """Return a validator that leaves a text as it is, and applies `read` to other values."""
     return lambda value: value if isinstance(value, str) else read(value)
 
 
 def _listed(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """Return what reads a value or a list of such."""
+    """Return a validator that applies `read` to a value, or to each item of a list."""
     return lambda value: (
         tuple(map(read, value)) if isinstance(value, (list, tuple)) and value else read(value)
     )
 
 
 def _one_or_list(item: Schema) -> Schema:
-    """Return the schema of a value or a list of such; each keyword is about one type of value."""
+    """Return the schema of an item or a list of them; each keyword applies to one type alone."""
     types = item["type"] if isinstance(item["type"], list) else [item["type"]]
     return item | {"type": [*types, "array"], "items": item, "minItems": 1}
 
@@ -67,7 +67,7 @@ def _plain(text: str) -> str:
     return text
 
 
-#: What the validators above take, for JSON Schema, which cannot see it.
+#: The values that the validators above accept, stated for JSON Schema.
 NUMBER: Schema = {"type": "number", "minimum": -MAX_SIZE, "maximum": MAX_SIZE}
 LAW_OR_NUMBER: Schema = NUMBER | {"type": ["number", "string"]}
 
@@ -129,7 +129,7 @@ class Parameter(Frozen):
 
     @property
     def si(self) -> float | tuple[float, ...]:
-        """The value in coherent SI, a tuple if it is given a lane at a time."""
+        """The value in coherent SI, a tuple if it is given per lane."""
         return self.lanes if isinstance(self.value, tuple) else self.lanes[0]
 
 
@@ -169,7 +169,7 @@ AnyElement: Any = Annotated[Union[tuple(KINDS.values())], Field(discriminator="k
 @final
 @dataclass(frozen=True)
 class Included:
-    """The model of a component, and the text that names it, where a text does."""
+    """The model of a component, and the text by which the spec names it, if there is one."""
 
     model: "Tables"
     text: str = field(default="", compare=False)
@@ -232,6 +232,6 @@ class Tables(Frozen):
         return self._joined
 
     @cached_property
-    def _joined(self) -> dict[str, int]:  # under a name that no iteration over fields has
+    def _joined(self) -> dict[str, int]:  # private: iteration over a model skips such a name
         several = ((name, e) for name, e in self.elements.items() if e.joined > 1)
         return {s.symbol: e.joined for name, e in several for s in e.own_states(name)}

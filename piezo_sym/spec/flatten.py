@@ -1,11 +1,11 @@
 """Models made of models and of banks, written out as one model of ordinary elements.
 
 Input: the tables of a spec, and of the models of its components.  Output: the tables of a spec
-without components, in which all that was a component's has its name in front: ``left_q``,
-``left_body``, ``T_left_body``, ``left.cap``; and where each of them stands as the user wrote it.
-The elements of a bank of cells say which bank they are in: ``creep_spring`` of bank ``creep``,
-between ``tip`` and ``creep.inside``, one for each lane.  A node that no element outside of [banks]
-names is a cell's own.
+without components, and the place of each row as the user wrote it.  Names of a component get its
+name in front: ``left_q``, ``left_body``, ``T_left_body``, ``left.cap``.  The elements of a bank of
+cells say which bank they are in: ``creep_spring`` of bank ``creep``, between ``tip`` and
+``creep.inside``, one for each lane.  A node that no element outside of [banks] names is a cell's
+own.
 """
 
 import re
@@ -35,7 +35,7 @@ Row = tuple[str, Any, str]
 @final
 @dataclass(frozen=True)
 class Flat:
-    """The tables of a model without components, and where what is in them was written."""
+    """The tables of a model without components, and the place of each row in the user's spec."""
 
     tables: dict[str, Any] = field(default_factory=dict)
     origins: dict[str, str] = field(default_factory=dict)
@@ -45,22 +45,22 @@ class Flat:
         return PLACE.sub(lambda match: self.origins.get(match[0], match[0]), where, count=1)
 
     def add(self, table: str, rows: Iterable[Row], *, over: bool = False) -> None:
-        """Add rows to a table; one may stand `over` another of its name, or is refused."""
-        made = self.tables.setdefault(table, {})
+        """Add rows to a table; a name that is there already is overwritten (`over`) or refused."""
+        present = self.tables.setdefault(table, {})
         for name, value, written in rows:
             place = f"{table}.{name}"
-            if name in made and not over:
+            if name in present and not over:
                 what = f"would be called '{name}', like {self.origins[place]}"
                 raise SpecError(what, written, remedy="rename one of them, or the component")
-            made[name], self.origins[place] = value, written
+            present[name], self.origins[place] = value, written
 
 
 def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
-    """Return the tables of a spec with those of its components in them.
+    """Return the tables of a spec, those of its components and banks added.
 
     Parameters
     ----------
-    models : those of the components, in order, without components themselves.
+    models : the flat models of the components, in order.
 
     Raises
     ------
@@ -98,19 +98,19 @@ def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
 @final
 @dataclass(frozen=True)
 class Part:
-    """A component in its place: its model's names, and what they become."""
+    """A component: the rows that its model adds to the flat spec, under their new names."""
 
     name: str
     component: Component
     model: Tables
 
     def rows(self, table: str) -> Iterator[Row]:
-        """Yield what it adds to a table."""
-        made = getattr(self, f"_{table}")()
-        return ((new, row, f"components.{self.name}: {table}.{old}") for old, new, row in made)
+        """Yield the rows that it adds to a table."""
+        rows = getattr(self, f"_{table}")()
+        return ((new, row, f"components.{self.name}: {table}.{old}") for old, new, row in rows)
 
     def assumed(self) -> Iterator[tuple[str, str]]:
-        """Yield the conditions of its domain, and their places; without those on what is gone."""
+        """Yield the conditions of its domain that use nothing left out, and their places."""
         for n, text in enumerate(self.model.domain.assume):
             used = names(parse_condition(text, "domain.assume"))
             if self.gone.isdisjoint(used):
@@ -124,7 +124,7 @@ class Part:
 
     @cached_property
     def gone(self) -> frozenset[str]:
-        """States, temperatures and inputs that only elements used that are left out."""
+        """The states, temperatures and inputs that go with the elements left out."""
         symbols, hot = states(self.model), temperatures(self.model)
         gone = {word for word, name in (*symbols.items(), *hot.items()) if name not in self.kept}
         starts = (start for name, start in self.model.initial.items() if name not in gone)
@@ -155,8 +155,8 @@ class Part:
         for name, parameter in self.model.parameters.items():
             given = self.component.parameters.get(name, parameter.value)
             if not isinstance(given, str):
-                made = parameter.model_copy(update={"value": given})
-                yield name, self.renaming.words[name], made
+                row = parameter.model_copy(update={"value": given})
+                yield name, self.renaming.words[name], row
 
     def _inputs(self) -> Iterator[tuple[str, str, Any]]:
         for name, entry in self.model.inputs.items():
@@ -198,8 +198,8 @@ def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any]
         for name, element in table.elements.items():
             place = f"{where}.elements.{name}"
             check_name(name, place)
-            _check(element, place, where)
-            node = partial(_node, bank, outside | {*(table.series or ())}, place)
+            _check_cell_element(element, place, where)
+            node = partial(_cell_node, bank, outside | {*(table.series or ())}, place)
             more = {"bank": bank, "count": table.count, "series": table.series}
             shared = {node for _, node in element.named("node")} <= {*REFERENCES, *outside}
             if shared and element.row.form.joins(element):
@@ -208,7 +208,7 @@ def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any]
             yield f"{bank}_{name}", fields | more, place
 
 
-def _check(element: Element, place: str, where: str) -> None:
+def _check_cell_element(element: Element, place: str, where: str) -> None:
     if not element.row.form.has_lanes:
         what = f"a {element.kind} is in no cell of a bank"
         remedy = f"write it in [elements], with nodes that cells of {where} name, too"
@@ -219,8 +219,8 @@ def _check(element: Element, place: str, where: str) -> None:
             raise SpecError(f"{key} is given in a cell", f"{place}.{key}", expected, "leave it out")
 
 
-def _node(bank: str, outside: set[str], place: str, node: str) -> str:
-    """Return what a cell's node is called: its own name, where it stands outside of cells, too."""
+def _cell_node(bank: str, outside: set[str], place: str, node: str) -> str:
+    """Return the new name of a cell's node; a node that also stands outside of cells keeps its."""
     if node in REFERENCES or node in outside:
         return node
     own = f"{bank}.{node}"

@@ -15,7 +15,7 @@ from piezo_sym.spec.model import Model
 from piezo_sym.spec.rename import Renaming
 from piezo_sym.spec.tables import states
 
-#: What a stack has once: the environment is at both ends.
+#: The elements that are not repeated per layer.
 ONCE = ("ambient", "load", "supply")
 
 
@@ -39,21 +39,21 @@ def layered(n: int) -> Model:
     """
     if isinstance(n, bool) or not isinstance(n, int) or n < 1:
         raise UsageError(f"{quote(n)} is no number of layers", "layered", "1, 2, 3 ...")
-    whole = load("piezo_stack")
+    stack = load("piezo_stack")
     title = f"Piezoelectric stack of {n} layers that conduct heat"
-    source = f"{whole.model.source}, cut into layers; conductance between them: a choice"
+    source = f"{stack.model.source}, cut into layers; conductance between them: a choice"
     hot = ["T > T_0"] if n == 1 else [f"T_body_{j} > T_0" for j in range(1, n + 1)]
     return Model(
         model={"name": "layered_stack", "title": title, "source": source},
-        parameters=_of_a_layer(whole, n),
-        inputs=whole.inputs,
-        domain={"assume": [*hot, *whole.domain.assume[1:], "lam_l >= 0"]},
-        initial={f"S_{j}": whole.initial["S"] for j in range(1, n + 1)},
-        elements=dict(_elements(whole, n)),
+        parameters=_layer_parameters(stack, n),
+        inputs=stack.inputs,
+        domain={"assume": [*hot, *stack.domain.assume[1:], "lam_l >= 0"]},
+        initial={f"S_{j}": stack.initial["S"] for j in range(1, n + 1)},
+        elements=dict(_elements(stack, n)),
     )
 
 
-def _of_a_layer(whole: Model, n: int) -> dict[str, Any]:
+def _layer_parameters(stack: Model, n: int) -> dict[str, Any]:
     """Return the parameters of one layer, and the heat conductance at each end of the stack."""
     shares: dict[str, tuple[Fraction | int, str]] = {
         "M": (Fraction(6 * n, (n + 1) * (2 * n + 1)), "mass of a layer"),
@@ -68,37 +68,37 @@ def _of_a_layer(whole: Model, n: int) -> dict[str, Any]:
         "c_0": (Fraction(1, n), "heat capacity of a layer"),
         "lam": (Fraction(1, 2), "heat conductance from an end to the environment"),
     }
-    made: dict[str, Any] = {
-        name: {**dict(whole.parameters[name]), "value": _times(whole, name, share), "doc": doc}
+    rows: dict[str, Any] = {
+        name: {**dict(stack.parameters[name]), "value": _times(stack, name, share), "doc": doc}
         for name, (share, doc) in shares.items()
     }
     doc = "heat conductance from a layer to the next"
-    return {**made, "lam_l": {"value": _times(whole, "lam", n), "unit": "W/K", "doc": doc}}
+    return {**rows, "lam_l": {"value": _times(stack, "lam", n), "unit": "W/K", "doc": doc}}
 
 
-def _times(whole: Model, name: str, share: Fraction | int) -> float:
-    return float(Fraction(repr(whole.parameters[name].value)) * share)
+def _times(stack: Model, name: str, share: Fraction | int) -> float:
+    return float(Fraction(repr(stack.parameters[name].value)) * share)
 
 
-def _elements(whole: Model, n: int) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the layers from the wall to the tip, what joins their bodies, and the ends."""
+def _elements(stack: Model, n: int) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the layers from the wall to the tip, the contacts of their bodies, and the ends."""
     for j in range(1, n + 1):
-        layer = _layer(whole, j)
-        for name in (name for name in whole.elements if name not in ONCE):
-            fields = layer.fields(whole.elements[name], name).items()
+        layer = _layer_names(stack, j)
+        for name in (name for name in stack.elements if name not in ONCE):
+            fields = layer.fields(stack.elements[name], name).items()
             yield layer.element(name), {k: v for k, v in fields if k not in ("count", "rest")}
     for j in range(1, n):
         pair = (f"body_{j}", f"body_{j + 1}")
         yield f"contact_{j}", {"kind": "conduction", "between": pair, "conductance": "lam_l"}
-    once = {name: dict(whole.elements[name]) for name in ONCE}
+    once = {name: dict(stack.elements[name]) for name in ONCE}
     yield "base", once["ambient"] | {"body": "body_1"}
     yield "top", once["ambient"] | {"body": f"body_{n}"}
     yield "load", once["load"] | {"at": f"x_{n}"}
     yield "supply", once["supply"]
 
 
-def _layer(whole: Model, j: int) -> Renaming:
-    """Return what layer j calls what is its own."""
+def _layer_names(stack: Model, j: int) -> Renaming:
+    """Return the names of the elements, states and nodes of layer j."""
     nodes = {"tip": f"x_{j}", "wall": f"x_{j - 1}" if j > 1 else "wall", "cap": f"cap_{j}"}
-    words = {symbol: f"{symbol.removesuffix('_C')}_{j}" for symbol in states(whole)}
+    words = {symbol: f"{symbol.removesuffix('_C')}_{j}" for symbol in states(stack)}
     return Renaming(words, lambda name: f"{name}_{j}", lambda node: nodes.get(node, node))

@@ -1,7 +1,7 @@
 """A spec file to a `Model`, and the text of a first spec.
 
 Input: a path, the name of a shipped spec, or text.  Output: a `Model`, or one error with the file's
-name.  All text from users comes in here.
+name.
 """
 
 from pathlib import Path

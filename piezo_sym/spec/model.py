@@ -1,9 +1,9 @@
 """The spec as one frozen value: what a user declares.
 
 Input: TOML data, or Python arguments of the same shape.  Output: a `Model`, immutable, hashable,
-and equal to another exactly if both say the same in the same order.  What its components and banks
-are, written out, is `flatten`'s; the later stages know of neither.  A component is a shipped name,
-a path below the folder of the spec that names it, or, in Python, a `Model`.
+and equal to another exactly if both say the same in the same order.  `flatten` writes components
+and banks out as elements; the later stages know of neither.  A component is a shipped name, a path
+below the folder of the spec that names it, or, in Python, a `Model`.
 """
 
 from __future__ import annotations
@@ -87,11 +87,11 @@ class Model(Tables):
 
     def _flattened(self) -> Model:
         models = (cast(Model, c.spec.model).flatten() for c in self.components.values())
-        made = flattened(self, models)
+        flat = flattened(self, models)
         try:
-            return Model(**made.tables)
+            return Model(**flat.tables)
         except PiezoError as error:
-            error.where = made.origin(error.where)
+            error.where = flat.origin(error.where)
             raise
 
     @property
@@ -101,14 +101,14 @@ class Model(Tables):
 
     @property
     def sha256(self) -> str:
-        """SHA-256 of the canonical spec, all written out; generated modules carry it."""
+        """SHA-256 of the flat spec in canonical form; generated modules carry it."""
         return spec_hash(self.flatten().model_dump())
 
     def to_toml(self) -> str:
         """Return the spec as TOML text; loading it gives an equal model.
 
-        Paths of components are as they were written, for a file in the same folder.  Where a
-        component is a `Model` made in Python, which no text can name, all are written out.
+        Paths of components are as they were written, for a file in the same folder.  If a component
+        is a `Model` made in Python, which no text can name, the flat spec is returned.
         """
         if not all(component.spec.text for component in self.components.values()):
             return self.flatten().to_toml()
@@ -140,7 +140,7 @@ class Reader:
         try:
             return Model(**self.complete(data(text), folder, chain))
         except PiezoError as error:
-            _put_around(error, source)
+            _prefix_place(error, source)
             raise
 
     def complete(
@@ -151,19 +151,19 @@ class Reader:
         Raises
         ------
         FileError, SpecError
-            If a component cannot be read, is no spec, has itself as a part, or lies elsewhere.
+            If a component cannot be read, is no spec, contains itself, or is outside `folder`.
         """
         table = content.get("components")
         if not isinstance(table, Mapping):
             return dict(content)
-        made = {}
+        rows = {}
         for name, row in table.items():
             given = row.get("spec") if isinstance(row, Mapping) else None
             if given is not None and not isinstance(given, Included):
                 where = f"components.{name}"
                 row = {**row, "spec": self._included(given, where, folder, chain)}
-            made[name] = row
-        return {**content, "components": made}
+            rows[name] = row
+        return {**content, "components": rows}
 
     def _included(self, given: object, where: str, folder: Path | None, chain: Chain) -> Included:
         if isinstance(given, Tables):
@@ -172,10 +172,10 @@ class Reader:
         try:
             return Included(self.file(path, chain), str(given))
         except PiezoError as error:
-            _put_around(error, where)
+            _prefix_place(error, where)
             raise
 
 
-def _put_around(error: PiezoError, where: str) -> None:
-    """Put a place around that of an error."""
+def _prefix_place(error: PiezoError, where: str) -> None:
+    """Name an outer place, such as a file, in front of the place of an error."""
     error.where = f"{where}: {error.where}" if error.where else where

@@ -1,7 +1,7 @@
-"""Where a spec says something that has a unit: laws, inputs, conditions, initial values.
+"""The places of a spec that have a unit: laws, inputs, conditions, initial values.
 
-Input: the tables of a spec.  Output: a `Place` each: the tree, the dimension of every name in it,
-and the dimension that it must have.
+Input: the tables of a spec.  Output: a `Place` for each: its tree, the dimension of every name in
+it, and the dimension that it must have.
 """
 
 from collections.abc import Iterator, Mapping
@@ -27,11 +27,11 @@ class Place:
     ----------
     where : its place in the spec, such as ``elements.damper.force``.
     element : the element it belongs to; empty for conditions and initial values.
-    tree : what stands there.
-    given : the dimensions of the parameters and inputs in its reach; a user may change these.
-    fixed : the dimensions of letters, states and temperatures; they go before those given.
+    tree : the parsed law, condition or value.
+    given : the dimensions of the parameters and inputs it may use, which a user may change.
+    fixed : the dimensions of letters, states and temperatures; they take precedence over `given`.
     needed : the dimension that a law must have; None for a condition.
-    unit : that of `needed` as the kind gives it; empty if none does.
+    unit : the unit text of `needed` in the kind's record; empty if there is none.
     """
 
     where: str
@@ -48,7 +48,7 @@ class Place:
         return {**self.given, **self.fixed}
 
     def rules(self) -> tuple[Match, ...]:
-        """Return what its units must keep, innermost first, the whole last."""
+        """Return the rules that its units must obey, innermost first, that of the law last."""
         inner = tuple(matches(self.tree))
         if self.needed is None or isinstance(self.tree, Cmp):
             return inner
@@ -58,8 +58,8 @@ class Place:
 def places(spec: Tables) -> Iterator[Place]:
     """Yield every place of a spec that has a unit, elements first.
 
-    What kinds add to the domain compares a law with 0, which fits any unit; initial values that are
-    plain numbers are in the state's SI unit.
+    Conditions that kinds add to the domain are left out: they compare a law with 0, which fits any
+    unit.  So are initial values that are plain numbers: they are in the state's SI unit.
     """
     parameters = {name: p.dimension.dimension for name, p in spec.parameters.items()}
     given = parameters | {name: u.dimension.dimension for name, u in spec.inputs.items()}
@@ -67,7 +67,7 @@ def places(spec: Tables) -> Iterator[Place]:
     hot = (*temperatures(spec), *(f"T_{body}" for body in bodies(spec)))
     seen = states | dict.fromkeys(hot, _dimension("K"))
     for name, element in spec.elements.items():
-        yield from (_law(law, parameters, seen) for law in element.laws(name))
+        yield from (_law_place(law, parameters, seen) for law in element.laws(name))
         for port in element.ports(name):
             if isinstance(port, Source | Exchange | HeatInput):
                 unit, place = port.input_unit, f"elements.{name}.input"
@@ -82,7 +82,9 @@ def places(spec: Tables) -> Iterator[Place]:
                 yield Place(where, "", tree, given, {}, states[symbol])
 
 
-def _law(law: LawField, given: Mapping[str, Dimension], seen: Mapping[str, Dimension]) -> Place:
+def _law_place(
+    law: LawField, given: Mapping[str, Dimension], seen: Mapping[str, Dimension]
+) -> Place:
     letters = {letter: _dimension(unit) for letter, unit in law.mark.units.items()}
     fixed, unit = {**(seen if law.mark.sees else {}), **letters}, law.mark.unit
     return Place(law.where, law.element, law.tree, given, fixed, _dimension(unit), unit)

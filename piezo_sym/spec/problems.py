@@ -14,7 +14,7 @@ from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.fields import Tables
 
-ENTRIES = {  # what stands for a name in a table
+ENTRIES = {  # what to write for an entry of a table
     "parameters": '{{ value = {value}, unit = "N/m" }}, with its own unit; "1" is none',
     "inputs": '{{ unit = "V" }}, with its own unit',
 }
@@ -26,11 +26,10 @@ NEEDED = {  # examples of keys whose name alone does not say what to write
 
 
 def first_problem(error: ValidationError) -> SpecError:
-    """Return the first of pydantic's findings as a `SpecError`."""
-    found = error.errors(include_url=False)
+    """Return the first of pydantic's errors as a `SpecError`."""
+    details = error.errors(include_url=False)
     # a misspelled key explains a missing one, so it comes first
-    found.sort(key=lambda detail: detail["type"] != "extra_forbidden")
-    first, *others = found
+    first, *others = sorted(details, key=lambda detail: detail["type"] != "extra_forbidden")
     problem = _problem(first)
     count = sum(not _explained(other, first, problem) for other in others)
     more = f"{count} more fault{'s' * (count > 1)} in this spec" if count else ""
@@ -104,7 +103,7 @@ def _expected(detail: ErrorDetails) -> str:
 
 
 def _known(place: list[str]) -> Iterable[str]:
-    """Return the keys that are known where `place` points."""
+    """Return the keys of the table in which `place` stands."""
     kind: Any = Tables
     if "elements" in place[:3:2] and len(place) > (at := place.index("elements") + 2):
         kind = KINDS.get(place[at])

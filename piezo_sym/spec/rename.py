@@ -1,7 +1,7 @@
-"""Names in a spec, replaced: laws, conditions and initial values keep their spelling.
+"""New names in a spec; laws, conditions and initial values keep their spelling otherwise.
 
-Input: texts or elements of a spec that was checked, and new names.  Output: the same with these.
-Components, cells and lanes are written out by it.
+Input: texts or elements of a checked spec, and new names.  Output: the same under the new names.
+Components, cells of banks and lanes are written out by it.
 """
 
 import re
@@ -18,7 +18,7 @@ WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 @final
 @dataclass(frozen=True)
 class Renaming:
-    """New names: of symbols `words`, of elements, and of nodes; a bank is renamed as an element."""
+    """New names for symbols (`words`), elements and nodes; a bank is renamed like an element."""
 
     words: Mapping[str, str]
     element: Callable[[str], str] = str
@@ -36,19 +36,19 @@ class Renaming:
 
     def fields(self, element: Element, name: str) -> dict[str, Any]:
         """Return the fields of an element, called `name` before, with new names."""
-        made = {**element.model_dump(exclude_none=True), **self._laws(element)}
+        fields = {**element.model_dump(exclude_none=True), **self._laws(element)}
         if states := getattr(element, "states", None):
-            made["states"] = {self._word(symbol): self._state(s) for symbol, s in states.items()}
-        ways = {"thermal_mass": self.element, "node": self.node, "input": self._word}
-        for field, way in ((row[0], ways[to]) for to in ways for row in element.named(to)):
-            given = getattr(element, field)
-            if field != "states":
-                made[field] = tuple(map(way, given)) if isinstance(given, tuple) else way(given)
+            fields["states"] = {self._word(symbol): self._state(s) for symbol, s in states.items()}
+        new_names = {"thermal_mass": self.element, "node": self.node, "input": self._word}
+        for to, new in new_names.items():
+            for field in dict(element.named(to)).keys() - {"states"}:
+                given = getattr(element, field)
+                fields[field] = tuple(map(new, given)) if isinstance(given, tuple) else new(given)
         if element.letter and (symbol := state_symbol(element, name)) in self.words:
-            made["state"] = self.words[symbol]
-        if "bank" in made:
-            made["bank"] = self.element(made["bank"])
-        return made
+            fields["state"] = self.words[symbol]
+        if "bank" in fields:
+            fields["bank"] = self.element(fields["bank"])
+        return fields
 
     def _word(self, word: str) -> str:
         return self.words.get(word, word)
@@ -60,13 +60,13 @@ class Renaming:
     def _laws(self, element: Element) -> dict[str, str]:
         """Return the laws of an element with new names, by field.
 
-        Letters of a law stay; but T is a name where the element names no body whose temperature it
-        is.
+        A law's letters stay.  T is a letter if the element names its body, else a symbol of the
+        model.
         """
         hot = any(element.named("thermal_mass"))
-        made = {}
+        laws = {}
         for law in element.laws(""):
             letters = set() if law.mark.own else {*law.letters} - (set() if hot else {"T"})
             words = {word: self.words[word] for word in self.words.keys() - letters}
-            made[law.field] = Renaming(words).text(law.text)
-        return made
+            laws[law.field] = Renaming(words).text(law.text)
+        return laws

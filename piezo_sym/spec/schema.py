@@ -30,7 +30,7 @@ Schema = dict[str, Any]
 
 @final
 class _Generator(GenerateJsonSchema):
-    """Schemas without what TOML cannot say, null, and what some editors do not read."""
+    """Schemas without null, which TOML does not have, and titles, which only repeat names."""
 
     ignored_warning_kinds = {"non-serializable-default"}  # noqa: RUF012 - of empty tables
 
@@ -46,7 +46,7 @@ class _Generator(GenerateJsonSchema):
         return {key: value for key, value in made.items() if (key, value) != ("default", None)}
 
     def tuple_schema(self, schema: Any) -> Schema:
-        """Return one schema for all items that are alike, which every draft has."""
+        """Return one schema, `items`, for items that are alike: every draft has that."""
         made = super().tuple_schema(schema)
         items = made.get("prefixItems", [None])
         if None in items or any(item != items[0] for item in items):
@@ -55,7 +55,7 @@ class _Generator(GenerateJsonSchema):
         return made | {"items": items[0]}
 
     def model_schema(self, schema: Any) -> Schema:
-        """Return a schema whose description is a docstring's, each paragraph on one line."""
+        """Return a schema described by the docstring, each paragraph on one line."""
         made = super().model_schema(schema)
         del made["title"]
         about = made.get("description", "").partition("\n\nAttributes\n")[0].split("\n\n")
@@ -81,7 +81,7 @@ def schema() -> Schema:
 
 
 def _element(kind: str, element: type[Element], made: Schema) -> Schema:
-    """Return a kind's schema, in which `kind` is required, and one field of each group."""
+    """Return a kind's schema, in which `kind` and one of its alternative fields are required."""
     made["properties"]["kind"] = {"const": kind, "description": "The kind of this element."}
     made["required"] = ["kind", *made.get("required", ())]
     if group := element.row.form.one_of:
@@ -90,12 +90,12 @@ def _element(kind: str, element: type[Element], made: Schema) -> Schema:
 
 
 def _union() -> Schema:
-    """Return the schema of any element, told apart by `kind`.
+    """Return the schema of an element of any kind.
 
-    A chain of if and then names the wrong key, where a plain oneOf says only that no kind fits.
-    Editors complete from the anyOf, which refuses nothing.
+    With if/then on `kind`, an error names the wrong key; with oneOf, it would only say that no kind
+    fits.  The anyOf, which refuses nothing, is there for completion in editors.
     """
-    found = {kind: {"$ref": f"#/$defs/{element.__name__}"} for kind, element in KINDS.items()}
+    refs = {kind: {"$ref": f"#/$defs/{element.__name__}"} for kind, element in KINDS.items()}
     return {
         "description": "An element of the network; its `kind` says which keys it has.",
         "type": "object",
@@ -103,7 +103,7 @@ def _union() -> Schema:
         "properties": {"kind": {"enum": list(KINDS)}},
         "allOf": [
             {"if": {"properties": {"kind": {"const": kind}}, "required": ["kind"]}, "then": of_kind}
-            for kind, of_kind in found.items()
+            for kind, of_kind in refs.items()
         ],
-        "anyOf": [*found.values(), True],
+        "anyOf": [*refs.values(), True],
     }

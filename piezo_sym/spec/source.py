@@ -1,7 +1,7 @@
-"""Spec files as text and plain data, before any type: found, read, checked for size and nesting.
+"""Spec files as text and plain data: found, read, checked for size and nesting.
 
-Input: a path, or the name of a shipped spec.  Output: text, or the data TOML gives.  Nothing here
-needs the spec's types, so that a run can compare a module with its spec at little cost.
+Input: a path, or the name of a shipped spec.  Output: text, or TOML data.  Nothing here needs the
+spec's types, so that a run can compare a module with its spec at little cost.
 """
 
 import os
@@ -87,7 +87,7 @@ def component_file(given: object, where: str, folder: Path | None) -> Path:
 
 
 def real(path: Path) -> Path:
-    """Return where a path leads; itself, if it has a character that no path has."""
+    """Return a path with its links resolved; unchanged if it holds a character that no path has."""
     try:
         return Path(os.path.realpath(path))
     except ValueError:
@@ -138,7 +138,7 @@ def data(text: str) -> dict[str, Any]:
 
 
 def _check_nesting(text: str) -> None:
-    """Refuse deep nesting, strings and comments aside: the TOML parser is recursive."""
+    """Refuse deep nesting outside of strings and comments: the TOML parser is recursive."""
     bare = QUOTED.sub("", text)
     if any(part.count(".") > MAX_DOTS for part in BETWEEN_KEYS.split(bare)):
         raise SpecError("has a key of too many parts", "", f"at most {MAX_DOTS + 1}")

@@ -1,7 +1,7 @@
 """What several stages read from the tables of a spec.
 
-Input: the tables of a spec.  Output: its states, banks, bodies,
-laws and conditions, in declaration order.
+Input: the tables of a spec.  Output: its states, banks, bodies, laws and conditions, in declaration
+order.
 """
 
 from collections.abc import Iterator, Mapping
@@ -39,9 +39,9 @@ def states(spec: Tables) -> dict[str, str]:
 
 
 def starts(spec: Tables, symbol: str) -> tuple[Expr, ...]:
-    """Return the initial value of a state, one or one per lane where lanes differ.
+    """Return the initial value of a state: one, or one per lane where lanes differ.
 
-    A state that is the sum of those of alike stores starts at the sum of their initial values.
+    The state of joined stores starts at the sum of their initial values.
     """
     start = spec.initial.get(symbol, 0.0)
     parts = start if isinstance(start, tuple) else (start,)
@@ -76,20 +76,19 @@ def banks(spec: Tables) -> dict[str, int]:
 
 
 def temperatures(spec: Tables) -> dict[str, str]:
-    """Return the body of each temperature symbol: ``T`` of the only one, else ``T_<element>``.
+    """Return the body of each temperature symbol.
 
-    Where something else of the spec is called T, it is ``T_<element>``, too.
+    The symbol is ``T`` if there is one body and T means nothing else, otherwise ``T_<element>``.
     """
-    found = bodies(spec)
-    single = len(found) == 1 and "T" not in {*spec.parameters, *spec.inputs, *states(spec)}
-    return {"T": found[0]} if single else {f"T_{name}": name for name in found}
+    names = bodies(spec)
+    single = len(names) == 1 and "T" not in {*spec.parameters, *spec.inputs, *states(spec)}
+    return {"T": names[0]} if single else {f"T_{name}": name for name in names}
 
 
 def seen(spec: Tables) -> Iterator[str]:
-    """Yield the names that a law may use that sees more than its own state.
+    """Yield the states and temperatures that a law with `Letters.sees` may use.
 
-    These are states, but for those of banks, which only laws in the same lane see, and
-    ``T_<element>``.
+    States of banks are left out: only laws in the same lane may use them.
     """
     lanes = bank_states(spec)
     yield from (symbol for symbol in states(spec) if symbol not in lanes)
@@ -97,62 +96,56 @@ def seen(spec: Tables) -> Iterator[str]:
 
 
 def in_words(spec: Tables, law: LawField, hot: Mapping[str, str]) -> Expr:
-    """Return a law in the words of [domain], `hot` being the temperature symbol of each body.
+    """Return a law in the symbols of [domain]; `hot` is the temperature symbol of each body.
 
-    A dissipative law keeps its letter.
+    The letter of a dissipative law's variable, which [domain] has no symbol for, stays.
     """
     return rename(law.tree, meanings(spec, law, hot))
 
 
 def meanings(spec: Tables, law: LawField, hot: Mapping[str, str]) -> dict[str, str]:
-    """Return what names in a law are called in [domain], if they are called differently there."""
+    """Return the symbols of [domain] for the names in a law that differ from them."""
     element = spec.elements[law.element]
-    named = [hot[given] for _, given in element.named("thermal_mass")]
-    named = named or list(hot.values())[: len(hot) == 1]
-    found = dict(zip(("T_1", "T_2"), named, strict=False)) | dict(zip("T", named, strict=False))
+    warm = [hot[given] for _, given in element.named("thermal_mass")]
+    warm = warm or list(hot.values())[: len(hot) == 1]
+    symbols = dict(zip(("T_1", "T_2"), warm, strict=False)) | dict(zip("T", warm, strict=False))
     if element.letter:
-        found[element.letter] = state_symbol(element, law.element)
+        symbols[element.letter] = state_symbol(element, law.element)
     if hasattr(element, "input"):
-        found["T_e"] = element.input
-    found = {letter: word for letter, word in found.items() if letter in law.letters}
-    return (_by_body(law.tree, hot) if law.mark.sees else {}) | found
+        symbols["T_e"] = element.input
+    symbols = {letter: word for letter, word in symbols.items() if letter in law.letters}
+    return (_body_temperatures(law.tree, hot) if law.mark.sees else {}) | symbols
 
 
-def _by_body(node: Node, hot: Mapping[str, str]) -> dict[str, str]:
-    """Return what [domain] calls the temperatures in a tree that go by their bodies."""
+def _body_temperatures(node: Node, hot: Mapping[str, str]) -> dict[str, str]:
+    """Return the symbols of [domain] for each ``T_<element>`` in a tree."""
     return {n: hot[n[2:]] for n in names(node) if n.startswith("T_") and n[2:] in hot}
 
 
 def conditions(spec: Tables) -> tuple[Condition, ...]:
-    """Return the domain: what the spec assumes, then what its kinds and half widths need."""
+    """Return the domain: the spec's assumptions, then what its kinds and half widths require."""
     hot, assumed = {body: word for word, body in temperatures(spec).items()}, list[Condition]()
     for n, text in enumerate(spec.domain.assume):
         tree = parse_condition(text, where := f"domain.assume[{n}]")
-        left, right = (rename(side, _by_body(side, hot)) for side in (tree.left, tree.right))
+        sides = (tree.left, tree.right)
+        left, right = (rename(side, _body_temperatures(side, hot)) for side in sides)
         assumed.append(Condition(where, Cmp(tree.op, left, right)))
-    found: dict[Cmp, Condition] = {}
-    needed = [
-        Condition(f"elements.{name}", need)
+    required = [
+        Condition(f"elements.{name}", test)
         for name, element in spec.elements.items()
-        for need in element.row.form.requires(element, name)
+        for test in element.row.form.requires(element, name)
     ]
-    for condition in [*assumed, *needed, *_not_negative(spec, hot, assumed)]:
-        found.setdefault(condition.tree, condition)
-    return tuple(found.values())
+    places: list[tuple[str, Node]] = [(w.where, in_words(spec, w, hot)) for w in laws(spec)]
+    places += [*((c.where, c.tree) for c in assumed), *initial_laws(spec)]
+    widths = (Condition(where, test) for where, tree in places for test in _width_tests(tree))
+    unique: dict[Cmp, Condition] = {}
+    for condition in (*assumed, *required, *widths):
+        unique.setdefault(condition.tree, condition)
+    return tuple(unique.values())
 
 
-def _not_negative(
-    spec: Tables, hot: Mapping[str, str], assumed: list[Condition]
-) -> Iterator[Condition]:
-    """Yield that each half width is >= 0, in laws, assumptions and initial values."""
-    for law in laws(spec):
-        yield from (Condition(law.where, width) for width in _widths(in_words(spec, law, hot)))
-    for where, node in [*((c.where, c.tree) for c in assumed), *initial_laws(spec)]:
-        yield from (Condition(where, width) for width in _widths(node))
-
-
-def _widths(law: Node) -> Iterator[Cmp]:
-    """Yield that each half width in a law is >= 0, except for numbers that are."""
+def _width_tests(law: Node) -> Iterator[Cmp]:
+    """Yield the condition ``width >= 0`` for each half width in a law that is no number >= 0."""
     for node in walk(law):
         if isinstance(node, Call) and RECORDS[node.function].width:
             width = node.args[1]
@@ -161,15 +154,15 @@ def _widths(law: Node) -> Iterator[Cmp]:
 
 
 def orders(spec: Tables) -> Iterator[Condition]:
-    """Yield that the knots of each table increase, wherever it stands in the spec."""
+    """Yield the conditions that the knots of each table in the spec increase."""
     parts: list[LawField | Condition] = [*laws(spec), *conditions(spec)]
     places = [*((part.where, part.tree) for part in parts), *initial_laws(spec)]
-    found = (Condition(where, order) for where, tree in places for order in increasing(tree))
-    yield from dict.fromkeys(found)
+    tests = (Condition(where, order) for where, tree in places for order in increasing(tree))
+    yield from dict.fromkeys(tests)
 
 
 def greater(condition: Cmp) -> Cmp:
-    """Return a comparison with > or >=; the sides of one with < or <= are swapped."""
+    """Return an equivalent comparison by > or >=: for < and <=, the sides are swapped."""
     turned = {"<": ">", "<=": ">="}
     if condition.op not in turned:
         return condition
@@ -182,7 +175,7 @@ def condition_text(condition: Cmp) -> str:
 
 
 def lane_parameters(spec: Tables) -> dict[str, str]:
-    """Return the bank of each parameter that only this bank uses: it may have a value per lane."""
+    """Return the bank of each parameter that one bank alone uses: it may have a value per lane."""
     users: dict[str, set[str | None]] = {}
     owners, lanes = bank_of(spec), bank_states(spec)
     for law in laws(spec):
@@ -192,11 +185,11 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
         for word in names(tree):
             users.setdefault(word, set()).add(lanes.get(where.removeprefix("initial.")))
     single = {word: next(iter(found)) for word, found in users.items() if len(found) == 1}
-    own = {word: bank for word in spec.parameters if (bank := single.get(word))}
-    lanes |= own
+    candidates = {word: bank for word in spec.parameters if (bank := single.get(word))}
+    lanes |= candidates
     groups = [names(condition.tree) for condition in conditions(spec)]
     mixed = {n for g in groups if len({lanes[n] for n in g if n in lanes}) > 1 for n in g}
-    return {word: bank for word, bank in own.items() if word not in mixed}
+    return {word: bank for word, bank in candidates.items() if word not in mixed}
 
 
 def initial_laws(spec: Tables) -> Iterator[tuple[str, Expr]]:

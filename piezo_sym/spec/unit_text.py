@@ -4,27 +4,29 @@ Input: a dimension.  Output: text such as ``A/K`` or ``a voltage [V]``.  A unit 
 product and quotient of at most three common units, the shortest first, else in base units.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, product
 
 from piezo_sym.errors import with_article
 from piezo_sym.expressions.dimensions import BASES, Dimension
-from piezo_sym.expressions.units import base_units, parse_unit, raised
+from piezo_sym.expressions.units import base_units, parse_unit, product_text
 from piezo_sym.spec.elements.domains import DOMAINS
 
-#: What is spelled like this although a text of fewer units exists.
+#: Usual spellings, preferred to shorter ones.
 USUAL = ("N*s/m", "N/m", "kg*m/s", "C/m")
-#: What has no other base unit is spelled in these: ``m**2/s**2``, not ``J/kg``.
+#: A dimension of these alone is spelled in base units: ``m**2/s**2``, not ``J/kg``.
 PLAIN = frozenset({"m", "s", "K"})
 #: The units texts are made of, best first.
 PARTS = ("V", "A", "N", "W", "J", "C", "ohm", "F", "H", "Wb", "Pa", "m", "s", "kg", "K")
 MOST_PARTS = 3
 SMALL, LARGE = (1, -1, 2, -2), (1, -1, 2, -2, 3, -3, 4, -4)
+#: Units and their powers.
+Powers = tuple[tuple[str, int], ...]
 
 _VARIABLES = [variable for domain in DOMAINS for variable in (domain.across, domain.through)]
-#: What a quantity in a unit is called; of one dimension, the first unless the unit is said.
+#: The quantity of each unit; of several units of one dimension, the first names the dimension.
 QUANTITIES: Mapping[str, str] = {
     "J": "an energy",
     "J*s": "an action",
@@ -79,35 +81,25 @@ def quantity(dimension: Dimension, said: str = "") -> str:
 
 @cache
 def _spellings() -> Mapping[tuple[Fraction | int, ...], str]:
-    """Return the first, that is the shortest, text of each dimension that has one."""
-    found: dict[tuple[Fraction | int, ...], str] = {}
-    for text in USUAL:
-        found.setdefault(parse_unit(text).dimension, text)
-    units = [(name, [int(p) for p in parse_unit(name).dimension]) for name in PARTS]
-    for powers in _powers():
-        chosen = [(units[n], power) for n, power in powers]
-        total = tuple(sum(d[k] * power for (_, d), power in chosen) for k in range(len(BASES)))
-        found.setdefault(total, _product([(name, power) for (name, _), power in chosen]))
-    return found
+    """Return the shortest text of each dimension that has one."""
+    spellings: dict[tuple[Fraction | int, ...], str] = {
+        parse_unit(text).dimension: text for text in USUAL
+    }
+    units = {name: [int(p) for p in parse_unit(name).dimension] for name in PARTS}
+    for powers in sorted(_products(), key=_length):
+        total = tuple(sum(units[name][k] * p for name, p in powers) for k in range(len(BASES)))
+        spellings.setdefault(total, product_text(powers))
+    return spellings
 
 
-def _powers() -> list[tuple[tuple[int, int], ...]]:
-    """Return which powers of which parts to try, the simplest first."""
-    found = [
-        tuple(zip(parts, powers, strict=True))
-        for size in range(1, MOST_PARTS + 1)
-        for parts in combinations(range(len(PARTS)), size)
-        for powers in product(SMALL if size == MOST_PARTS else LARGE, repeat=size)
-    ]
-    return sorted(found, key=_length)
+def _products() -> Iterator[Powers]:
+    """Yield the products of powers of units to try."""
+    for size in range(1, MOST_PARTS + 1):
+        for parts in combinations(PARTS, size):
+            for powers in product(SMALL if size == MOST_PARTS else LARGE, repeat=size):
+                yield tuple(zip(parts, powers, strict=True))
 
 
-def _length(powers: tuple[tuple[int, int], ...]) -> tuple[int, int, int]:
+def _length(powers: Powers) -> tuple[int, int, int]:
     size = sum(abs(power) for _, power in powers)
     return len(powers), size, sum(power < 0 for _, power in powers)
-
-
-def _product(powers: list[tuple[str, int]]) -> str:
-    above = [raised(name, power) for name, power in powers if power > 0]
-    below = [raised(name, -power) for name, power in powers if power < 0]
-    return "/".join(["*".join(above) or "1", *below])

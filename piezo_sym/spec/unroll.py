@@ -1,7 +1,7 @@
 """Banks written out: a model in which every lane is an element of its own.
 
 Input: a `Model` and a size for each bank.  Output: a `Model` without banks, to be derived like any
-other; it shows explicit matrices, and checks the derivation that keeps sizes symbolic.
+other.  It shows explicit matrices, and checks the derivation that keeps sizes symbolic.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -29,7 +29,7 @@ def unroll(model: Model, counts: Mapping[str, int]) -> Model:
         If `counts` names no bank, or a size below 1.
     """
     _check_counts(model, counts)
-    sizes, owners, inner = {**banks(model), **counts}, bank_of(model), _inner(model)
+    sizes, owners, inner = {**banks(model), **counts}, bank_of(model), _cell_nodes(model)
     listed, values = lane_parameters(model), model.parameters.items()
     of_lanes = bank_states(model) | {n: listed[n] for n, p in values if isinstance(p.value, tuple)}
     lanes = {symbol: sizes[bank] for symbol, bank in of_lanes.items()}
@@ -41,25 +41,25 @@ def unroll(model: Model, counts: Mapping[str, int]) -> Model:
     def element(name: str, lane: int) -> dict[str, Any]:
         own, bank = model.elements[name], owners[name]
         nodes = {node: f"{node}.{lane}" for node in inner}
-        nodes |= _link(own.chain, bank, lane, sizes[bank])
-        made = _in_lane(lanes, lane, lambda node: nodes.get(node, node)).fields(own, name)
-        return made | {"count": None, "bank": None, "series": None}
+        nodes |= _chain_nodes(own.chain, bank, lane, sizes[bank])
+        fields = _lane_names(lanes, lane, lambda node: nodes.get(node, node)).fields(own, name)
+        return fields | {"count": None, "bank": None, "series": None}
 
     def start(symbol: str, lane: int) -> Any:
         given = _of_lane(model.initial[symbol], lane, lanes[symbol])
-        return _in_lane(lanes, lane).start(given)
+        return _lane_names(lanes, lane).start(given)
 
     data = model.model_dump()
-    data["parameters"] = _spread(model.parameters, lanes, parameter)
+    data["parameters"] = _with_lanes(model.parameters, lanes, parameter)
     in_bank = {name: sizes[bank] for name, bank in owners.items()}
-    data["elements"] = _spread(model.elements, in_bank, element)
-    data["initial"] = _spread(model.initial, lanes, start)
+    data["elements"] = _with_lanes(model.elements, in_bank, element)
+    data["initial"] = _with_lanes(model.initial, lanes, start)
     data["domain"] = {"assume": tuple(_assumed(model, lanes))}
     return Model(**data)
 
 
-def _in_lane(lanes: Iterable[str], lane: int, node: Callable[[str], str] = str) -> Renaming:
-    """Return the names of a lane's own symbols, lanes counted from 1."""
+def _lane_names(lanes: Iterable[str], lane: int, node: Callable[[str], str] = str) -> Renaming:
+    """Return the new names of the symbols `lanes` and of nodes in a lane, counted from 1."""
     return Renaming({symbol: f"{symbol}_{lane}" for symbol in lanes}, node=node)
 
 
@@ -67,28 +67,28 @@ def _assumed(model: Model, lanes: Mapping[str, int]) -> Iterator[str]:
     for text in model.domain.assume:
         used = names(parse_condition(text, "domain.assume"))
         count = max((lanes[word] for word in used if word in lanes), default=0)
-        yield from (_in_lane(lanes, lane).text(text) for lane in range(1, count + 1))
+        yield from (_lane_names(lanes, lane).text(text) for lane in range(1, count + 1))
         if not count:
             yield text
 
 
-def _spread(
-    table: Mapping[str, Any], sizes: Mapping[str, int], made: Callable[[str, int], Any]
+def _with_lanes(
+    table: Mapping[str, Any], sizes: Mapping[str, int], lane_row: Callable[[str, int], Any]
 ) -> dict[str, Any]:
-    """Return a table with a row for each lane; refuse a lane under a name that is taken."""
+    """Return a table with a row for each lane; refuse a lane whose name is taken."""
     rows: dict[str, Any] = {}
     for name, row in table.items():
         lanes = range(1, sizes.get(name, 0) + 1)
-        for own, value in [(f"{name}_{n}", made(name, n)) for n in lanes] or [(name, row)]:
-            if own in rows:
-                what = f"a lane would be called {quote(own)}, and that name is taken"
-                raise UsageError(what, "expand", remedy=f"rename '{own}' in the spec")
-            rows[own] = value
+        for new, value in [(f"{name}_{n}", lane_row(name, n)) for n in lanes] or [(name, row)]:
+            if new in rows:
+                what = f"a lane would be called {quote(new)}, and that name is taken"
+                raise UsageError(what, "expand", remedy=f"rename '{new}' in the spec")
+            rows[new] = value
     return rows
 
 
 def _of_lane(values: Any, lane: int, size: int) -> Any:
-    """Return what a lane has of the values of a bank."""
+    """Return the value of one lane, counted from 1, from those of a bank."""
     if not isinstance(values, tuple):
         return values
     return values[lane - 1] if len(values) == size else values[0]
@@ -103,8 +103,8 @@ def _check_counts(model: Model, counts: Mapping[str, int]) -> None:
             raise UsageError(f"{quote(count)} is no size", f"expand: {name}", "1, 2, 3 ...")
 
 
-def _link(chain: Branch | None, bank: str, lane: int, size: int) -> dict[str, str]:
-    """Return what a lane calls the ends of a chain."""
+def _chain_nodes(chain: Branch | None, bank: str, lane: int, size: int) -> dict[str, str]:
+    """Return the nodes between which a lane stands, by the ends of its chain."""
     if chain is None:
         return {}
     ends = f"{bank}.{lane - 1}", f"{bank}.{lane}"
@@ -114,10 +114,11 @@ def _link(chain: Branch | None, bank: str, lane: int, size: int) -> dict[str, st
     }
 
 
-def _inner(model: Model) -> set[str]:
+def _cell_nodes(model: Model) -> set[str]:
     """Return the nodes that elements of one bank alone name."""
     users: dict[str, set[str | None]] = {}
     for name, element in model.elements.items():
         for _, node in element.named("node"):
             users.setdefault(node, set()).add(element.bank_of(name))
-    return {n for n, own in users.items() if len(own) == 1 and None not in own} - {*REFERENCES}
+    single = {n for n, banks in users.items() if len(banks) == 1 and None not in banks}
+    return single - {*REFERENCES}

@@ -1,8 +1,8 @@
-"""Values of a spec, apart from all else that it says: what an edit changes without a new proof.
+"""The values of a spec, which an edit may change without a new proof.
 
-Input: plain data of a spec, as TOML gives it, or the texts of a module.  Output: the hash of what
-is proved, and texts with other values.  Nothing here needs the spec's types, so that a run can tell
-an edit of a value without loading them.
+Input: plain data of a spec, as TOML gives it, or the texts of a module.  Output: the hash of a spec
+without its values, and the texts of its module with new ones.  Nothing here needs the spec's types,
+so that a run can recognise an edit of a value without loading them.
 """
 
 import hashlib
@@ -17,24 +17,24 @@ from piezo_sym.expressions.units import scaled
 from piezo_sym.spec.write import MAX_SIZE, spec_hash
 
 Texts: TypeAlias = dict[str, str]
-#: Where numbers stand in a spec, what a number is called there, and what it is if it is left out.
+#: The tables that hold values, with the key of the value and its default.
 TABLES: dict[str, tuple[str, float | None]] = {
     "parameters": ("value", None),
     "inputs": ("default", 0.0),
 }
-#: The places of a spec's hash and of its verdict in a template; no parameter has these names.
+#: The names of the spec's hash and of the verdict in a template; no parameter has these names.
 HASH, VERDICT = "#", "!"
-#: What stands in a template for a value or the hash; no text of a spec holds such characters.
+#: The place of a value, or of the hash or verdict, in a template; no spec holds such characters.
 PLACE = re.compile("\0[^\0]+\0")
 
 
 def place(name: str) -> str:
-    """Return what stands in a template for a value."""
+    """Return the place of a value in a template."""
     return f"\0{name}\0"
 
 
 def lane_name(name: str, lane: int) -> str:
-    """Return what the value of one lane is called, counted from 0."""
+    """Return the name of one lane's value, lanes counted from 0."""
     return f"{name}.{lane}"
 
 
@@ -45,10 +45,10 @@ class Template:
 
     Attributes
     ----------
-    files : text by how the file's name ends.
-    factors : name of a parameter or an input -> its unit in coherent SI, an exact fraction.
-    quick : whether the module's own `margins` tell all that loading the spec checks of values.
-    verdict : in one line; of values in the domain it says nothing else than of any others.
+    files : text by ending of the file's name.
+    factors : for each parameter and input, the exact factor from its unit to coherent SI.
+    quick : whether the module's own `margins` cover all checks of values that loading a spec makes.
+    verdict : in one line; it holds for all values in the domain.
     """
 
     files: Mapping[str, str]
@@ -78,7 +78,7 @@ class Template:
 
 
 def from_text(text: str) -> Template | None:
-    """Return a template; None if the text is not as it was written."""
+    """Return the template in a text; None if its digest does not fit."""
     digest, _, content = text.partition("\n")
     return Template(**json.loads(content)) if digest == _digest(content) else None
 
@@ -88,7 +88,7 @@ def _digest(text: str) -> str:
 
 
 def shape_hash(data: Mapping[str, Any]) -> str:
-    """Return the SHA-256 of a spec without its values: of what its proofs and programs hold for."""
+    """Return the SHA-256 of a spec without its values; proofs and programs depend on no more."""
     tables = {
         name: {word: _without_value(entry, *TABLES[name]) for word, entry in data[name].items()}
         for name in TABLES.keys() & data.keys()
@@ -97,29 +97,25 @@ def shape_hash(data: Mapping[str, Any]) -> str:
 
 
 def _without_value(entry: Any, key: str, default: float | None) -> Any:
-    """Return an entry whose number is 1; what is none, or missing, stays and is refused later."""
+    """Return an entry with 1 for its number; anything else stays, and is refused later."""
     if not isinstance(entry, Mapping) or (value := entry.get(key, default)) is None:
         return entry
-    return {**entry, key: _unit(value)}
+    return {**entry, key: _with_ones(value)}
 
 
-def _unit(value: Any) -> Any:
+def _with_ones(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
-        return [_unit(item) for item in value]
-    return 1.0 if _is_number(value) else value
-
-
-def _is_number(value: Any) -> bool:
+        return [_with_ones(item) for item in value]
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return number and abs(value) <= MAX_SIZE  # so it is finite
+    return 1.0 if number and abs(value) <= MAX_SIZE else value
 
 
 def _number_texts(data: Mapping[str, Any], factors: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Yield what stands for every value of a spec, in coherent SI."""
+    """Yield the name of every value of a spec, and its text in coherent SI."""
     for table, (key, default) in TABLES.items():
         for name, entry in data.get(table, {}).items():
             factor = Fraction(factors[name])
-            for word, value in _named(name, entry.get(key, default)):
+            for word, value in _lane_values(name, entry.get(key, default)):
                 si = scaled(float(value), factor)
                 if si and not 1 / MAX_SIZE <= abs(si) <= MAX_SIZE:
                     msg = f"{name} is beyond all numbers"
@@ -127,7 +123,7 @@ def _number_texts(data: Mapping[str, Any], factors: Mapping[str, str]) -> Iterat
                 yield word, repr(si)
 
 
-def _named(name: str, value: Any) -> Iterator[tuple[str, float]]:
+def _lane_values(name: str, value: Any) -> Iterator[tuple[str, float]]:
     if isinstance(value, (list, tuple)):
         yield from ((lane_name(name, lane), item) for lane, item in enumerate(value))
     else:

@@ -15,7 +15,7 @@ NOTHING: tuple[Any, ...] = (None, False, "", "0", [])
 
 
 def to_toml(data: Mapping[str, Any]) -> str:
-    """Return spec data as TOML: parameters and inputs a line each, elements a table each."""
+    """Return spec data as TOML: a line for each parameter and input, a table for each element."""
     single = ("model", "parameters", "inputs", "domain", "initial")
     blocks = [_table(name, data[name]) for name in single if data.get(name)]
     for kind in ("components", "elements", "banks"):
@@ -54,8 +54,7 @@ def spec_hash(data: Mapping[str, Any]) -> str:
     """Return the SHA-256 of spec data.
 
     Order counts where it means something: among parameters, inputs, elements and their states.
-    Entries that say nothing (0, "0", "", false, an empty list) are left out, since leaving them out
-    means the same.
+    Entries without effect (0, "0", "", false, an empty list) are left out of the hash.
     """
     rows = {name: _rows(table, name in ORDERED) for name, table in data.items()}
     tables = {name: table for name, table in rows.items() if table}

@@ -24,7 +24,7 @@ from piezo_sym.codegen.program import (
     Program,
     Quantity,
 )
-from piezo_sym.codegen.switches import switched
+from piezo_sym.codegen.switches import switched_values
 from piezo_sym.expressions.calculus import add, compared, derivative, div, is_affine, mul
 from piezo_sym.expressions.grammar import parse_rule
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, If, LaneSum, Num, Sym, names, rebuild
@@ -137,7 +137,7 @@ class HandMade:
         ports = (OutputRow(Slot(name), read(text)) for name, text in self.supply.items())
         rows = (*rates, *ports, *(row for row, _ in heats), *produced)
         lanes = q.lanes() | {mean.name: mean.bank for mean in means if mean.bank}
-        found = switched(q.defined, rows, lanes, q.new, means=means)
+        found = switched_values(q.defined, rows, lanes, q.new, means=means)
         stage = Stage(
             tuple(map(sharp_quantity, found.quantities)),
             found.rows[: len(rates)],
@@ -156,10 +156,10 @@ class HandMade:
         q = _Quantities(self, self.costates())
         free = {c.name for c in self.costates() if not self._affine(c)}
         rates = self._rows(self.rates, q)
-        found = switched(q.defined, rates, q.lanes(), q.new, compared_names=free)
+        found = switched_values(q.defined, rates, q.lanes(), q.new, compared_names=free)
         mean = {}
         for path in self._paths():
-            force, slip = mul(path.stiffness, Sym(path.inner)), path.slip_in_motion
+            force, slip = mul(path.stiffness, Sym(path.inner)), path.mean_slip
             mean |= {path.effort: force, path.slip: slip, path.heat: mul(force, slip)}
         rates = tuple(replace(row, value=put(row.value, mean)) for row in found.rows)
         defined = tuple(replace(d, value=put(d.value, mean)) for d in found.quantities)

@@ -1,1 +1,1 @@
-"""C99: a module's functions, and the step that `run/engine` drives."""
+"""C99: the functions of a module, and the step that `run/engine` drives."""

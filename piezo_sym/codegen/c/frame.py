@@ -1,7 +1,7 @@
-"""The frame of a C function: its comment, its head, and what its body unpacks of its arguments.
+"""The frame of a C function: its comment, its head, and the definitions at the start of its body.
 
-Input: a `Program` and the arrays that functions take.  Output: the text of functions.  `double`
-functions are those of a module, `real` ones those of a step: for one run, or for vectors of many.
+Input: a `Program` and the arrays that functions take.  Output: the text of functions.  Those of a
+module compute with `double`, those of a step with `real`: numbers of one run, or vectors of many.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -22,12 +22,12 @@ Definition = tuple[str, str]  # a name, and the line that defines it
 @final
 @dataclass(frozen=True)
 class FunctionFrame:
-    """What the functions of one C file have in common.
+    """The frame that the functions of one C file share.
 
     Attributes
     ----------
-    arrays : of each argument that is an array, what it holds.
-    words : the C name of each argument, and of what the printer adds.
+    arrays : the fields of each argument that is an array.
+    words : the C name of each argument, and of the printer's own variables.
     taken : every name in use.
     """
 
@@ -51,22 +51,19 @@ class FunctionFrame:
 
         Parameters
         ----------
-        local : what the body may use besides its arguments.
-        known : names that the body defines itself, though an argument holds them.
+        local : definitions that the body may use, besides those from its arguments.
+        known : names that the body defines itself, although an argument holds them.
         """
         definitions = [*self.sizes(), *local, *self._parameters()]
         for word in arguments:
             definitions += self._elements(word) if word in self.arrays else []
-        once: dict[str, str] = {}
+        unique: dict[str, str] = {}
         for defined, line in definitions:
-            once.setdefault(defined, line)
-        kept = used_only(
-            body,
-            [item for item in once.items() if item[0] not in known],
-            [self.words[word] for word in arguments],
-        )
+            if defined not in known:
+                unique.setdefault(defined, line)
+        used = used_only(body, [*unique.items()], [self.words[word] for word in arguments])
         head = declaration(self.program, name, arguments, self.words, self.lines.number)
-        return "\n".join([*comment(doc), head, "{", *indented([*kept, *body]), "}"])
+        return "\n".join([*comment(doc), head, "{", *indented([*used, *body]), "}"])
 
     def sizes(self) -> Iterator[Definition]:
         """Yield the sizes of banks."""
@@ -79,9 +76,9 @@ class FunctionFrame:
             yield name, f"const {self.lines.number} {star}{name} = {self.words['p']}->{name};"
 
     def _elements(self, word: str) -> Iterator[Definition]:
-        """Yield what an array holds, a bank's as a pointer to its lanes."""
+        """Yield the definitions of the fields of an array, a bank's as a pointer to its lanes."""
         fields, array, number = self.arrays[word], self.words[word], self.lines.number
-        at = self.layout(word, [Slot(field.name, field.bank) for field in fields])
+        at = self.layout(word, [field.slot for field in fields])
         yield from ends(at)
         for n, field in enumerate(fields):
             name, place = self.lines.names[field.name], at.position(n)
@@ -89,21 +86,21 @@ class FunctionFrame:
             yield name, pointer if field.bank else f"const {number} {name} = {array}[{place}];"
 
     def layout(self, word: str, slots: Sequence[Slot]) -> Places:
-        """Return where the rows of an array stand."""
+        """Return the places of the rows of an array."""
         return places(slots, f"end_{word}", self.taken)
 
     def writes(self, word: str, rows: Sequence[OutputRow]) -> tuple[list[Write], list[Definition]]:
-        """Return what writes rows to an array, and the ends of banks that it uses."""
+        """Return the writes of rows to an array, and the definitions that they use."""
         at = self.layout(word, [row.slot for row in rows])
-        found = [
+        writes = [
             Write(f"{self.words[word]}[{self.place(at, n)}]", row.value, row.slot.bank)
             for n, row in enumerate(rows)
             if not row.listed
         ]
-        return found, [*ends(at)]
+        return writes, [*ends(at)]
 
     def place(self, at: Places, n: int, lane: str = "") -> str:
-        """Return the place of slot n, of the loop's lane if it is a bank's."""
+        """Return the place of slot n; of a bank, that of a lane, the loop's if none is given."""
         first, lane = at.position(n), lane or self.words["j"]
         if not at.slots[n].bank:
             return first
@@ -116,15 +113,15 @@ class FunctionFrame:
         roots: Sequence[Expr] = (),
         lines: Words | None = None,
     ) -> list[str]:
-        """Return the lines that compute what is needed, and write it."""
+        """Return the lines that compute what `writes` and `roots` need, and write."""
         words = lines or self.lines
         wanted = needed(quantities, [*roots, *(write.value for write in writes)])[0]
-        found = stages(wanted, writes, self.program.counts)
-        body = [line for stage in found for line in stage_lines(stage, words)]
+        order = stages(wanted, writes, self.program.counts)
+        body = [line for stage in order for line in stage_lines(stage, words)]
         last = [line for w in writes if not w.bank for line in write_lines(w, words)]
         return [*body, *(["/* result */"] if last and body else []), *last]
 
 
 def ends(at: Places) -> Iterator[Definition]:
-    """Yield the definitions of where banks end, if these have names."""
+    """Yield the definitions of the ends of banks that have names."""
     yield from ((line.split()[0], f"const long {line};") for line in at.definitions())

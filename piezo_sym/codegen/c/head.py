@@ -1,21 +1,20 @@
-"""The header of a C module: what it is, its parameters, and what each function takes and gives.
+"""The header of a C module: a description, the parameters, and the declarations of functions.
 
-Input: a `Program`.  Output: the text of ``<model>.h``.  Texts of a spec stand in comments alone,
+Input: a `Program`.  Output: the text of ``<model>.h``.  Texts of a spec are in comments only,
 changed so that they cannot end one.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
 
-from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.c.names import added, c_names
+from piezo_sym.codegen.c.names import c_names, fresh_names
 from piezo_sym.codegen.layout import size_in_words
-from piezo_sym.codegen.program import Described, Program, described
+from piezo_sym.codegen.program import Described, Program, head_lines
 from piezo_sym.errors import one_line
 
 WIDTH = 96
-MOST_LANES = 16  # of a bank whose values stand in the header
-#: What functions do that the program does not describe.
+MOST_LANES = 16  # of a bank whose values are in the header
+#: Docstrings of functions that the program does not describe.
 FUNCTIONS = {
     "states": "Number of states n",
     "processes": "Number of processes, which produce entropy; of a bank, one per lane",
@@ -44,7 +43,7 @@ def c_header(program: Program) -> str:
 
 
 def text_of(text: str) -> str:
-    """Return text from a spec so that it is plain and cannot end, open or continue a comment."""
+    """Return text from a spec, changed so that it cannot end, open or continue a comment."""
     plain = one_line(text).replace("\\", "/")
     for pair, apart in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
         while pair in plain:
@@ -56,13 +55,13 @@ def opening(program: Program) -> str:
     """Return the comment at the head of both files."""
     notes = ["C99; values are in SI units; build with -O3 -fopenmp-simd -fno-math-errno."]
     p = pointer_name(program)
-    lines = described(program, text_of, notes, (p, f"pointer to {program.name}_parameters"))
+    lines = head_lines(program, text_of, notes, (p, f"pointer to {program.name}_parameters"))
     return "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */"])
 
 
 def pointer_name(program: Program) -> str:
-    """Return what functions call the pointer to their parameters: p, or where it is taken p_."""
-    return added(("p",), program, c_names(program))["p"]
+    """Return the name of the pointer to parameters in functions: p, or p_ if that is taken."""
+    return fresh_names(("p",), program, c_names(program))["p"]
 
 
 def _parameters(program: Program) -> Iterator[str]:
@@ -87,7 +86,7 @@ def _parameters(program: Program) -> Iterator[str]:
 
 
 def _defaults(program: Program, names: Mapping[str, str]) -> Iterator[str]:
-    """Yield the values of the spec as an initializer; of large banks the caller makes arrays."""
+    """Yield the values of the spec as an initializer, unless a bank is large."""
     if has_defaults(program):
         fields = []
         for field in program.parameters:
@@ -107,12 +106,12 @@ def _defaults(program: Program, names: Mapping[str, str]) -> Iterator[str]:
 
 
 def has_defaults(program: Program) -> bool:
-    """Return whether the header has the values of the spec: no bank of it is large."""
+    """Return whether the header has an initializer, which it has if no bank is large."""
     return all(count <= MOST_LANES for count in program.counts.values())
 
 
 def _numbers(program: Program) -> Iterator[str]:
-    """Yield the sizes that are the same for every bank size."""
+    """Yield the sizes that do not depend on the sizes of banks."""
     sizes = {
         "input": program.inputs,
         "output": program.outputs,
@@ -135,7 +134,7 @@ def declaration(
 ) -> str:
     """Return the first lines of a function, without body and semicolon.
 
-    `number` is what it computes with in its definition; a declaration for callers has none.
+    `number` is the type in which a definition computes; it is empty in a declaration for callers.
     """
     restrict = "restrict " if number else ""
     record = "reals" if number == "real" else "parameters"
@@ -155,25 +154,25 @@ def _declarations(program: Program) -> Iterator[str]:
     docs = {**FUNCTIONS, **{function.name: function.doc for function in program.functions}}
     takes = {f.name: (*f.arguments, *([] if f.scalar else ["out"])) for f in program.functions}
     takes |= dict.fromkeys(("states", "processes"), ("p",))
-    words = added(("x", "u", "p", "out", "n", "j", "l", "left"), program, c_names(program))
+    words = fresh_names(("x", "u", "p", "out", "n", "j", "l", "left"), program, c_names(program))
     for name in filter(docs.__contains__, _ORDER.split()):
         arguments = takes.get(name, ("x", "u", "p", "out"))
-        lines = [*wrapped(f"{docs[name]}."), *_given(program, name, arguments, words)]
+        lines = [*wrapped(f"{docs[name]}."), *_argument_lines(program, name, arguments, words)]
         head = declaration(program, name, arguments, words)
         yield "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */", f"{head};"])
 
 
 def wrapped(text: str, first: str = "") -> list[str]:
-    """Return a text of a comment in lines."""
+    """Return the lines of a text in a comment."""
     return wrap(text_of(text), WIDTH - 4, initial_indent=first, subsequent_indent="    ")
 
 
-def _given(
+def _argument_lines(
     program: Program, name: str, arguments: Sequence[str], words: Mapping[str, str]
 ) -> Iterator[str]:
-    """Yield a line on each argument, with units."""
+    """Yield the description of each argument, with units."""
     processes = f"{program.name}_processes({words['p']})"
-    elements = size_in_words([Slot(field.name, field.bank) for field in program.elements])
+    elements = size_in_words([field.slot for field in program.elements])
     results = {
         "initial_state": ("n", program.states),
         "temperatures": (f"{program.name}_body_count", program.bodies),
@@ -191,9 +190,7 @@ def _given(
         "u": (f"{program.name}_input_count", program.inputs),
         "out": results.get(name, ("", ())),
     }
-    for argument in arguments:
-        if argument == "p":
-            continue
+    for argument in (word for word in arguments if word != "p"):
         size, fields = layouts[argument]
         listed = ", ".join(f"{field.spread} [{field.unit}]" for field in fields)
         role = "written; must not overlap another argument" if argument == "out" else "read"
@@ -206,7 +203,7 @@ def _given(
 
 
 def comment(doc: str) -> list[str]:
-    """Return a comment of one line, or of several."""
+    """Return the lines of a comment."""
     lines = wrap(text_of(f"{doc}."), WIDTH - 4)
     if len(lines) == 1:
         return [f"/* {lines[0]} */"]

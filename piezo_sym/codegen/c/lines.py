@@ -1,6 +1,6 @@
-"""Statements of C: definitions, loops over lanes, and what a function unpacks.
+"""Statements of C: definitions, and loops over lanes.
 
-Input: stages of a function.  Output: lines of C99.  Only what a function uses is defined in it.
+Input: stages of a function.  Output: lines of C99.  A function defines only what it uses.
 """
 
 import re
@@ -17,14 +17,14 @@ from piezo_sym.codegen.c.style import (
     widened,
     with_branches,
 )
-from piezo_sym.codegen.layout import terms
+from piezo_sym.codegen.layout import term_lines
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.text import Style, write_comparison
 from piezo_sym.expressions.tree import Add, Expr, If, LaneSum
 
 WIDTH = 96
-#: Calls that take one lane at a time: a loop with them is not to be vectorised.
+#: Calls that compilers do not vectorise; a loop with one gets no directive.
 _ALONE = "|".join(record.in_c for record in RECORDS.values() if record.transcendental)
 LIBRARY = re.compile(rf"\b(?:{_ALONE}|pow)(?:_of)?\(")
 
@@ -36,9 +36,9 @@ class Words:
 
     Attributes
     ----------
-    names : what C calls each name of the program.
-    arrays : the parameters and states of a bank, and which bank's.
-    lane : the lane of a loop.
+    names : the C name of each name of the program.
+    arrays : the bank of each parameter and state that is an array over lanes.
+    lane : the index of a loop over lanes.
     number : the type of numbers: ``double``, or ``real`` in a text for every width.
     """
 
@@ -48,7 +48,7 @@ class Words:
     number: str = "double"
 
     def style(self, lane: str | None = None) -> Style:
-        """Return the spelling of expressions in lane `lane`: in the loop's, if none is given."""
+        """Return the spelling of expressions in a lane, the loop's if none is given."""
         style = c_style(self.names, self.arrays, lane or self.lane)
         return style if self.number == "double" else real_style(style)
 
@@ -58,13 +58,16 @@ class Words:
 
 
 def indented(lines: Iterable[str], depth: int = 1) -> Iterator[str]:
-    """Yield lines moved to the right; directives stay at the left."""
+    """Yield indented lines; directives stay at the left."""
     for line in lines:
         yield line if line.startswith("#") or not line else f"{'    ' * depth}{line}"
 
 
 def statement(target: str, value: Expr, words: Words, lane: str | None = None) -> list[str]:
-    """Return ``target value;``, target with an operator; a long value has a line a term or case."""
+    """Return ``target value;``; a long value gets one line per term or case.
+
+    `target` ends with an operator, such as ``=``.
+    """
     text = words.text(value, lane)
     if words.number != "double" and is_constant(value):
         text = f"wide({text})"
@@ -74,7 +77,7 @@ def statement(target: str, value: Expr, words: Words, lane: str | None = None) -
     style = words.style(lane)
     if isinstance(parts, If):
         return _pick(target, parts, style, wide=words.number != "double")
-    lines = list(terms(parts, lambda part: c_piece(part, style)))
+    lines = list(term_lines(parts, lambda part: c_piece(part, style)))
     return [f"{target} {lines[0]}", *(f"    {line}" for line in lines[1:-1]), f"    {lines[-1]};"]
 
 
@@ -88,14 +91,14 @@ def _pick(target: str, value: If, style: Style, *, wide: bool) -> list[str]:
 
 
 def define(quantity: Quantity, words: Words, lane: str | None = None) -> list[str]:
-    """Return the definition of a quantity: of a shared one, or of one lane's."""
+    """Return the definition of a quantity, shared or of one lane."""
     return statement(
         f"const {words.number} {words.names[quantity.name]} =", quantity.value, words, lane
     )
 
 
-def noted(quantities: Iterable[Quantity], words: Words) -> Iterator[str]:
-    """Yield definitions with a comment where the kind of quantity changes."""
+def _definitions(quantities: Iterable[Quantity], words: Words) -> Iterator[str]:
+    """Yield definitions, with a comment where the kind of quantity changes."""
     note = ""
     for quantity in quantities:
         if quantity.note != note:
@@ -106,13 +109,13 @@ def noted(quantities: Iterable[Quantity], words: Words) -> Iterator[str]:
 
 def stage_lines(stage: LoopStage, words: Words) -> Iterator[str]:
     """Yield the lines of one stage."""
-    yield from noted(stage.shared, words)
+    yield from _definitions(stage.shared, words)
     for loop in stage.loops:
         yield from loop_lines(loop, words)
 
 
 def loop_lines(loop: LaneLoop, words: Words) -> Iterator[str]:
-    """Yield a loop over the lanes of a bank, and what it starts from."""
+    """Yield a loop over the lanes of a bank, after its initial values."""
     sums = [words.names[quantity.name] for quantity in loop.sums]
     parts = [*(["sums over lanes"] if loop.sums else []), *(["result"] if loop.writes else [])]
     yield f"/* each lane of {loop.bank}: {' and '.join(parts)} */"
@@ -129,9 +132,9 @@ def loop_lines(loop: LaneLoop, words: Words) -> Iterator[str]:
 
 
 def _directive(sums: Sequence[str], writes: Sequence[Write]) -> Iterator[str]:
-    """Yield the directive that lets a compiler take lanes together, and add them in any order.
+    """Yield the directive that lets a compiler vectorise over lanes and reorder sums.
 
-    A least over the lanes is no sum: with the directive, lanes taken together would lose it.
+    A loop with a minimum over lanes gets none: it is no sum reduction, and would be wrong.
     """
     if not sums or any(write.how == "min" for write in writes):
         yield from ["#pragma omp simd"] if all(write.how == "=" for write in writes) else []
@@ -157,7 +160,7 @@ def _body(loop: LaneLoop, words: Words) -> Iterator[str]:
 
 
 def write_lines(write: Write, words: Words) -> list[str]:
-    """Return the lines that write a value where it goes."""
+    """Return the lines that write a value to its target."""
     if write.how == "min":
         least = "min" if words.number == "double" else "least"
         return [f"{write.target} = {least}({write.target}, {words.text(write.value)});"]
@@ -167,7 +170,7 @@ def write_lines(write: Write, words: Words) -> list[str]:
 def used_only(
     body: Sequence[str], definitions: Sequence[tuple[str, str]], arguments: Iterable[str]
 ) -> list[str]:
-    """Return the definitions that `body` needs, and a note to the compiler on unused arguments."""
+    """Return the definitions that `body` needs, after a ``(void)`` for each unused argument."""
     seen = _identifiers(body)
     kept: list[str] = []
     for name, line in reversed(definitions):

@@ -1,17 +1,16 @@
 """Program to C99: one source file of functions of one state, without allocation and globals.
 
-Input: a `Program`.  Output: the text of ``<model>.c``.  Its loops over lanes are made to be
-vectorised; rows of a bank are written in the loop that also adds up the sums, where they can be.
+Input: a `Program`.  Output: the text of ``<model>.c``.  Compilers can vectorise its loops over
+lanes; where possible, rows of a bank are written in the loop that adds up the sums.
 """
 
 from collections.abc import Iterator
 from typing import final
 
-from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.c.frame import FunctionFrame, ends
 from piezo_sym.codegen.c.head import FUNCTIONS, opening
 from piezo_sym.codegen.c.lines import Words, define, indented, statement
-from piezo_sym.codegen.c.names import added, c_names
+from piezo_sym.codegen.c.names import c_names, fresh_names
 from piezo_sym.codegen.c.order import Write, lane_quantities, least_over_lanes
 from piezo_sym.codegen.c.style import helpers
 from piezo_sym.codegen.program import (
@@ -45,28 +44,27 @@ class _Printer:
 
     def __init__(self, program: Program) -> None:
         self.program, self.lanes, names = program, program.lane_names(), c_names(program)
-        words = added(("x", "u", "p", "out", "n", "j", "l", "left"), program, names)
+        words = fresh_names(("x", "u", "p", "out", "n", "j", "l", "left"), program, names)
         fields = (*program.parameters, *program.states)
         banks = {field.name: field.bank for field in fields if field.bank}
         self.lines = Words(names, banks, words["j"])
         arrays = {"x": program.states, "u": program.inputs}
         self.frame = FunctionFrame(program, arrays, words, self.lines, program.taken)
-        slots = [Slot(field.name, field.bank) for field in program.states]
-        self.states = self.frame.layout("x", slots)
+        self.states = self.frame.layout("x", [field.slot for field in program.states])
         self.out, self.n, self.j = (words[word] for word in ("out", "n", "j"))
 
     # Functions
 
     def sizes(self) -> Iterator[str]:
-        """Yield the functions that tell how many states and processes there are."""
+        """Yield the functions that return the numbers of states and of processes."""
         counted = {"states": self.program.states, "processes": self.program.processes}
         for name, fields in counted.items():
-            at = self.frame.layout("out", [Slot(f.name, f.bank) for f in fields])
+            at = self.frame.layout("out", [field.slot for field in fields])
             body = [f"return {at.size};"]
             yield self.frame.function(name, ("p",), FUNCTIONS[name], body, local=[*ends(at)])
 
     def function(self, function: ModuleFunction) -> str:
-        """Return one function with a row a slot."""
+        """Return one function of the module."""
         arguments, frame = function.arguments, self.frame
         if function.scalar:
             value = function.rows[0].value
@@ -96,20 +94,20 @@ class _Printer:
         return self.frame.function("jacobian", ("x", "u", "p", "out"), doc, body, local=local)
 
     def margins(self) -> str:
-        """Return the function that tells how far inside its domain a state is."""
+        """Return the function of the margins, by which the conditions of the domain hold."""
         writes = least_over_lanes(self.out, self.program.limits, self.lanes)
         body = self.frame.computed(self.program.quantities, [*writes])
         doc = FUNCTIONS["margins"]
         return self.frame.function("margins", ("x", "u", "p", "out"), doc, body)
 
     def _listed(self, place: str, row: OutputRow) -> Iterator[str]:
-        """Yield the lines that write values listed a lane; lanes beyond the list are NAN."""
+        """Yield the lines that write a list of values per lane; lanes beyond the list are NAN."""
         name, size = f"{self.lines.names[row.slot.label]}_listed_", len(row.listed)
         fixed = all(isinstance(v.arg if isinstance(v, Neg) else v, Num) for v in row.listed)
         yield f"{'static ' if fixed else ''}const double {name}[{size}] = {{"
         for j, value in enumerate(row.listed):
             text = self.lines.text(value, str(j))
-            if bank_of(value, self.lines.arrays):  # a lane that may not be there is not read
+            if bank_of(value, self.lines.arrays):  # do not read beyond the lanes of the run
                 text = f"{j} < {row.slot.bank}_count ? {text} : (double)NAN"
             yield f"    {text},"
         yield "};"
@@ -120,11 +118,9 @@ class _Printer:
     # Entries of the Jacobian
 
     def _place(self, entry: Entry, column_lane: str) -> str:
-        """Return the place of an entry in the array, of the lanes of its row and column."""
-        row, col = (
-            self.frame.place(self.states, entry.row),
-            self.frame.place(self.states, entry.col, column_lane),
-        )
+        """Return the target of an entry, in the loop's lane of its row and a lane of its column."""
+        row = self.frame.place(self.states, entry.row)
+        col = self.frame.place(self.states, entry.col, column_lane)
         start = f"({row})*{self.n}" if " " in row else f"{row}*{self.n}"
         start = {"0": "", "1": f"{self.n} + "}.get(row, f"{start} + ")
         return f"{self.out}[{start}{col}]"
@@ -152,6 +148,6 @@ class _Printer:
         yield from ("    }", "}")
 
     def _lane(self, bank: str | None, value: Expr, lane: str) -> Iterator[str]:
-        """Yield the definitions of a lane's quantities that a value needs."""
+        """Yield the definitions of the quantities of a lane that a value needs."""
         for quantity in lane_quantities(self.program.quantities, bank or "", [value]):
             yield from define(quantity, self.lines, lane)

@@ -1,7 +1,7 @@
-"""Words that a spec may use and C may not: keywords, macros of the headers, called functions.
+"""Names in C: those of the spec, unless they are keywords, macros of headers or called functions.
 
-Input: the names of a program.  Output: what C calls each of them: the name itself, or with an
-underscore.  The header is used together with others, and in C++: their macros and keywords count.
+Input: the names of a program.  Output: the C name of each: the name itself, or with an underscore.
+The header is used together with others, and in C++: their macros and keywords count.
 """
 
 from collections.abc import Iterable, Mapping
@@ -27,9 +27,9 @@ SCHAR_MIN SCHAR_MAX UCHAR_MAX SHRT_MIN SHRT_MAX USHRT_MAX INT_MIN INT_MAX UINT_M
 ULONG_MAX LLONG_MIN LLONG_MAX ULLONG_MAX SIZE_MAX FLT_RADIX DECIMAL_DIG SIGABRT SIGFPE SIGILL SIGINT
 SIGSEGV SIGTERM SIG_DFL SIG_ERR SIG_IGN CLOCKS_PER_SEC"""
 _FLOATS = "DIG EPSILON MANT_DIG MAX MAX_10_EXP MAX_EXP MIN MIN_10_EXP MIN_EXP"
-#: The functions that generated code calls, beside those that laws are written with.
+#: The functions that generated code calls, besides those of laws.
 _CALLED = "copysign expm1 fabs pow " + " ".join(f"power_{n}" for n in range(2, 9))
-#: What a step's text and the engine's behind it have names for: numbers of one run, or vectors.
+#: The names that a step's text and the engine's text behind it define.
 _REALS = (
     "PLAIN MODEL REAL_WIDTH LANE OF SET LANES NUMBER FUNCTION real mask pattern few zero "
     "nowhere wide chosen any none_of size_of with_sign power_of_two small_expm1 reduced is_above "
@@ -49,29 +49,21 @@ KEPT = (
 
 
 def c_names(program: Program) -> dict[str, str]:
-    """Return what C calls each name of a program; no two have the same name."""
-    taken = {*program.taken, *KEPT, *_words(program)}
+    """Return the C name of each name of a program; no two are the same."""
+    functions = (function.name for function in program.functions)
+    reserved = KEPT | {f"{program.name}_{end}" for end in (*functions, *_ENDS)}
+    taken = {*program.taken, *reserved}
     names: dict[str, str] = {}
-    for word in _all(program):
-        names[word] = fresh(word, taken) if word in KEPT or word in _words(program) else word
+    words = [field.name for field in (*program.parameters, *program.inputs, *program.states)]
+    words += [f"{bank}_count" for bank in program.counts]
+    words += [quantity.name for quantity in program.quantities]
+    for word in dict.fromkeys(words):
+        names[word] = fresh(word, taken) if word in reserved else word
         taken.add(names[word])
     return names
 
 
-def _words(program: Program) -> frozenset[str]:
-    """Return the names that the module's own functions and types have."""
-    functions = (function.name for function in program.functions)
-    return frozenset(f"{program.name}_{end}" for end in (*functions, *_ENDS))
-
-
-def _all(program: Program) -> Iterable[str]:
-    fields = (*program.parameters, *program.inputs, *program.states)
-    yield from dict.fromkeys(field.name for field in fields)
-    yield from (f"{bank}_count" for bank in program.counts)
-    yield from (quantity.name for quantity in program.quantities)
-
-
-def added(words: Iterable[str], program: Program, names: Mapping[str, str]) -> dict[str, str]:
-    """Return names for what the printer adds, none of them in use."""
+def fresh_names(words: Iterable[str], program: Program, names: Mapping[str, str]) -> dict[str, str]:
+    """Return unused names for the printer's own variables."""
     new = Names((*program.taken, *names.values(), *KEPT))
     return {word: new(word) for word in words}

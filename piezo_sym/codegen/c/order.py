@@ -1,9 +1,9 @@
 """The order in which scalar code computes a function: stages of shared values and loops over lanes.
 
-Input: quantities and what is to be written.  Output: `LoopStage` records.  A value that needs no
-sum over lanes is of stage 0, one that needs such a sum of a later one.  A bank has one loop a
-stage: it computes each lane's quantities, adds up the sums and writes the lane's rows, so that
-nothing has to be stored a lane; a quantity that a later loop needs again is computed again.
+Input: quantities and writes.  Output: `LoopStage` records.  A value that needs no sum over lanes is
+of stage 0; one that needs such a sum is of a later stage.  A bank has one loop per stage, which
+computes the quantities of each lane, adds up the sums and writes the rows of the lane, so that
+nothing is stored per lane; a quantity that a later loop needs is computed again.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -17,9 +17,9 @@ from piezo_sym.expressions.tree import Expr, LaneSum, names
 @final
 @dataclass(frozen=True)
 class Write:
-    """A value and where it goes: `target` is text; `bank` if there is one per lane.
+    """A value and its target, a text; `bank` if there is one per lane.
 
-    `how` is "=", "+=", or "min" for the least over the lanes.
+    `how` is "=", "+=", or "min" for the minimum over the lanes.
     """
 
     target: str
@@ -31,7 +31,7 @@ class Write:
 def least_over_lanes(
     array: str, limits: Iterable[Limit], lanes: Mapping[str, str]
 ) -> Iterator[Write]:
-    """Yield what writes the margins of some conditions."""
+    """Yield the writes of the margins of some conditions."""
     for n, limit in enumerate(limits):
         bank = bank_of(limit.margin, lanes)
         yield Write(f"{array}[{n}]", limit.margin, bank, "min" if bank else "=")
@@ -40,7 +40,7 @@ def least_over_lanes(
 @final
 @dataclass(frozen=True)
 class LaneLoop:
-    """A loop over the lanes of a bank: quantities of a lane, sums over lanes, rows of a lane."""
+    """A loop over the lanes of a bank: quantities per lane, sums over lanes, rows per lane."""
 
     bank: str
     lanes: tuple[Quantity, ...]
@@ -51,7 +51,7 @@ class LaneLoop:
 @final
 @dataclass(frozen=True)
 class LoopStage:
-    """Values that all lanes share, then the loops that need no later ones."""
+    """Values that all lanes share, then the loops that need nothing of later stages."""
 
     shared: tuple[Quantity, ...]
     loops: tuple[LaneLoop, ...]
@@ -60,7 +60,7 @@ class LoopStage:
 def stages(
     quantities: Sequence[Quantity], writes: Sequence[Write], banks: Iterable[str]
 ) -> tuple[LoopStage, ...]:
-    """Return the stages that compute all that a function writes, rows of banks included."""
+    """Return the stages that compute all writes of a function, and write the rows of banks."""
     level = _levels(quantities)
     last = max([0, *(_level(w.value, level) for w in writes), *level.values()])
     return tuple(_stage(n, quantities, writes, tuple(banks), level) for n in range(last + 1))
@@ -74,7 +74,7 @@ def lane_quantities(
 
 
 def _levels(quantities: Sequence[Quantity]) -> dict[str, int]:
-    """Return the first stage in which each quantity is known."""
+    """Return the first stage in which the value of each quantity is available."""
     level: dict[str, int] = {}
     for quantity in quantities:
         after = int(isinstance(quantity.value, LaneSum))
@@ -93,25 +93,17 @@ def _stage(
     banks: tuple[str, ...],
     level: Mapping[str, int],
 ) -> LoopStage:
-    shared = [
-        q
-        for q in quantities
-        if not q.bank and not isinstance(q.value, LaneSum) and level[q.name] == n
-    ]
-    sums = [q for q in quantities if isinstance(q.value, LaneSum) and level[q.name] == n + 1]
-    rows = [w for w in writes if w.bank and _level(w.value, level) == n]
-    return LoopStage(tuple(shared), tuple(_loops(quantities, sums, rows, banks)))
-
-
-def _loops(
-    quantities: Sequence[Quantity],
-    sums: Sequence[Quantity],
-    rows: Sequence[Write],
-    banks: tuple[str, ...],
-) -> Iterator[LaneLoop]:
-    for bank in banks:
-        own = tuple(q for q in sums if isinstance(q.value, LaneSum) and q.value.bank == bank)
-        written = tuple(row for row in rows if row.bank == bank)
-        if own or written:
-            roots = [*(q.value for q in own), *(row.value for row in written)]
-            yield LaneLoop(bank, lane_quantities(quantities, bank, roots), own, written)
+    shared, loops = list[Quantity](), list[LaneLoop]()
+    sums: dict[str, list[Quantity]] = {bank: [] for bank in banks}
+    for q in quantities:
+        if isinstance(q.value, LaneSum):
+            if level[q.name] == n + 1:
+                sums[q.value.bank].append(q)
+        elif not q.bank and level[q.name] == n:
+            shared.append(q)
+    for bank, summed in sums.items():
+        rows = [w for w in writes if w.bank == bank and _level(w.value, level) == n]
+        if roots := [*(q.value for q in summed), *(w.value for w in rows)]:
+            lanes = lane_quantities(quantities, bank, roots)
+            loops.append(LaneLoop(bank, lanes, tuple(summed), tuple(rows)))
+    return LoopStage(tuple(shared), tuple(loops))

@@ -1,7 +1,7 @@
-"""The record of a step's parameters in C: numbers of one run, or of one per lane of vectors.
+"""The record of a step's parameters in C: numbers of one run, or vectors of one run per lane.
 
-Input: a `Program` and its names in C.  Output: the record, and the functions by which lanes get the
-parameters of their runs.
+Input: a `Program` and its names in C.  Output: the record, and the functions that copy the
+parameters of a run into a lane of the vectors.
 """
 
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ def record_text(program: Program, names: Mapping[str, str]) -> str:
 
 
 def place_text(program: Program, names: Mapping[str, str]) -> str:
-    """Return the function that says where the parameters of lanes stand."""
+    """Return the function that places the arrays for parameters of banks."""
     body = [] if program.counts else ["(void)to;", "(void)from;"]
     body += ["real *const begin = at;"]
     body += [f"to->{bank}_count = from->{bank}_count;" for bank in program.counts]
@@ -41,7 +41,7 @@ def place_text(program: Program, names: Mapping[str, str]) -> str:
 
 
 def give_text(program: Program, names: Mapping[str, str]) -> str:
-    """Return the function that gives a lane the parameters of a run."""
+    """Return the function that copies the parameters of a run into a lane of the vectors."""
     body = ["(void)lane;"]
     for field in program.parameters:
         name = names[field.name]

@@ -1,8 +1,8 @@
 """A collocation step in C, for every width of ``real``: one number, or one of each of many runs.
 
-Input: a `Program` and its `Collocation`.  Output: the text of ``<model>_step.c``: the means'
-integrands, a stage, the slopes, and the tables by which equations are eliminated; `run/engine`
-drives them.  Nothing is compared there: branches are given, so the text holds for vectors too.
+Input: a `Program` and its `Collocation`.  Output: the text of ``<model>_step.c``: the integrands of
+means, a stage, the slopes, and the tables for the elimination; `run/engine` drives them.  Branches
+are given, so the text compares nothing, and holds for vectors, too.
 """
 
 import re
@@ -14,7 +14,7 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.c.frame import Definition, FunctionFrame, ends
 from piezo_sym.codegen.c.head import comment, opening
 from piezo_sym.codegen.c.lines import Words, indented, used_only
-from piezo_sym.codegen.c.names import added, c_names
+from piezo_sym.codegen.c.names import c_names, fresh_names
 from piezo_sym.codegen.c.order import Write, least_over_lanes
 from piezo_sym.codegen.c.record import give_text, place_text, record_text
 from piezo_sym.codegen.c.style import powers
@@ -31,7 +31,7 @@ NOTE = """\
  * functions `integrands` and `stage`; the others and the tables serve Newton's method.
  */"""
 
-#: What the text says of `real` where nobody has defined it: it is one number.
+#: The definitions of `real` as one number, if the including file has not defined it.
 REAL = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
@@ -51,9 +51,9 @@ typedef REAL real;
 _LIBRARY = tuple(record.in_c for record in RECORDS.values() if record.smooth)
 
 
-def c_step(program: Program, made: Collocation) -> str:
+def c_step(program: Program, step: Collocation) -> str:
     """Return the text of a model's collocation step."""
-    printer = _Printer(program, made)
+    printer = _Printer(program, step)
     functions = [
         printer.integrands(),
         *printer.bends(),
@@ -76,75 +76,63 @@ def c_step(program: Program, made: Collocation) -> str:
 class _Printer:
     """Prints the functions of one model's step."""
 
-    def __init__(self, program: Program, made: Collocation) -> None:
-        self.program, self.made, self.name = program, made, program.name
-        stage, slopes = made.stage, made.slopes
-        self.means = [Described(mean.name, "", "", mean.bank) for mean in made.means]
-        self.given = [*self.means, *(field for path in made.paths for field in path.given())]
+    def __init__(self, program: Program, step: Collocation) -> None:
+        self.program, self.step, self.name = program, step, program.name
+        stage, slopes = step.stage, step.slopes
+        self.means = [Described(mean.name, "", "", mean.bank) for mean in step.means]
+        self.given = [*self.means, *(field for path in step.paths for field in path.given())]
         self.branches = [Described(s.branch, "", "", s.bank) for s in stage.switches]
         both = {q.name: q for q in (*stage.quantities, *slopes.quantities)}
-        whole = replace(
+        extended = replace(
             program,
             states=(*program.states, *self.given, *self.branches),
             quantities=tuple(both.values()),
             taken=stage.taken | slopes.taken,
         )
-        self.names = c_names(whole)
-        words = added(["x", "g", "b", "u", "p", "out", "rows", "s", "m", "j"], whole, self.names)
-        fields = (*program.parameters, *whole.states)
+        self.names = c_names(extended)
+        words = ("x", "g", "b", "u", "p", "out", "rows", "s", "m", "j")
+        self.words = fresh_names(words, extended, self.names)
+        fields = (*program.parameters, *extended.states)
         self.banks = {field.name: field.bank for field in fields if field.bank}
         arrays = {"x": program.states, "g": self.given, "b": self.branches, "u": program.inputs}
-        lines = Words(self.names, self.banks, words["j"], "real")
-        self.frame, self.words = FunctionFrame(program, arrays, words, lines, whole.taken), words
+        lines = Words(self.names, self.banks, self.words["j"], "real")
+        self.frame = FunctionFrame(program, arrays, self.words, lines, extended.taken)
         self.coupling = coupling_of(program, slopes)
 
     # Functions
 
     def integrands(self) -> str:
-        """Return what co-states that are given to a stage are means of."""
-        rows = [OutputRow(Slot(mean.name, mean.bank), mean.value) for mean in self.made.means]
+        """Return the function of the integrands, whose means are given to a stage."""
+        rows = [OutputRow(Slot(mean.name, mean.bank), mean.value) for mean in self.step.means]
         doc = "Functions of the state whose weighted means over a step are the means g of a stage"
         return self._of_state("integrands", doc, rows)
 
     def bends(self) -> Iterator[str]:
-        """Yield the function that tells where integrands have kinks, if they have some."""
-        if self.made.stage.bends:
+        """Yield the function whose zeros are the kinks of integrands, if there are kinks."""
+        if self.step.stage.bends:
             doc = "Functions of the state that change their sign where integrands have kinks"
-            yield self._of_state("bends", doc, self.made.stage.bends)
+            yield self._of_state("bends", doc, self.step.stage.bends)
 
     def paths(self) -> Iterator[str]:
-        """Yield the table of path functionals, and the function of what they take, if any."""
-        paths, states = self.made.paths, [state.name for state in self.program.states]
-        if paths:
-            banks = [None, *self.program.counts]
-            table = (
-                f"{banks.index(p.bank) - 1}, {int(p.own)}, {states.index(p.inner)}" for p in paths
-            )
-            yield "\n".join(
-                [
-                    *comment(
-                        "Path functionals: bank or -1, whether each lane has a drive, inner state"
-                    ),
-                    f"#define PATHS {len(paths)}",
-                    f"static const int {self.name}_path[PATHS][3] = {{",
-                    *(f"    {{{row}}}," for row in table),
-                    "};",
-                ]
-            )
-            rows = [
-                OutputRow(Slot(path.inner, path.bank), value)
-                for path in paths
-                for value in (path.stiffness, path.limit)
-            ]
-            yield self._of_state(
-                "path_parameters", "Stiffness and limit of each path functional", rows
-            )
-            drives = [OutputRow(Slot(p.slip, p.bank if p.own else None), p.drive) for p in paths]
-            writes, local = self.frame.writes("out", drives)
-            body = self.frame.computed(self.made.stage.quantities, writes)
-            doc = "Drives of path functionals: the rates of their coordinates"
-            words = ("x", "g", "b", "u", "p", "out")
-            yield self.frame.function("drives", words, doc, body, local=local)
+        """Yield the table of path functionals, their parameters and drives, if there are any."""
+        paths, states = self.step.paths, [state.name for state in self.program.states]
+        if not paths:
+            return
+        banks = [None, *self.program.counts]
+        table = [f"{banks.index(p.bank) - 1}, {int(p.own)}, {states.index(p.inner)}" for p in paths]
+        doc = "Path functionals: bank or -1, whether each lane has a drive, inner state"
+        head = f"#define PATHS {len(paths)}\nstatic const int {self.name}_path[PATHS][3] = {{"
+        yield "\n".join([*comment(doc), head, *(f"    {{{row}}}," for row in table), "};"])
+        values = [(path, value) for path in paths for value in (path.stiffness, path.limit)]
+        rows = [OutputRow(Slot(path.inner, path.bank), value) for path, value in values]
+        doc = "Stiffness and limit of each path functional"
+        yield self._of_state("path_parameters", doc, rows)
+        drives = [OutputRow(Slot(p.slip, p.bank if p.own else None), p.drive) for p in paths]
+        writes, local = self.frame.writes("out", drives)
+        body = self.frame.computed(self.step.stage.quantities, writes)
+        doc = "Drives of path functionals: the rates of their coordinates"
+        words = ("x", "g", "b", "u", "p", "out")
+        yield self.frame.function("drives", words, doc, body, local=local)
 
     def _of_state(self, name: str, doc: str, rows: Sequence[OutputRow]) -> str:
         writes, local = self.frame.writes("out", rows)
@@ -153,13 +141,13 @@ class _Printer:
 
     def stage(self) -> str:
         """Return the function of a stage: rates, what the ledger books, switching functions."""
-        stage = self.made.stage
+        stage = self.step.stage
         switches = [OutputRow(Slot(s.branch, s.bank), s.value) for s in stage.switches]
         rows = {"s": switches, "out": stage.rates, "rows": stage.booked}
-        made = [self.frame.writes(word, found) for word, found in rows.items()]
+        results = [self.frame.writes(word, values) for word, values in rows.items()]
         lanes = {**{q.name: q.bank for q in stage.quantities if q.bank}, **self.banks}
         margins = least_over_lanes(self.words["m"], stage.limits, lanes)
-        writes = [*(write for found, _ in made for write in found), *margins]
+        writes = [*(write for group, _ in results for write in group), *margins]
         doc = (
             "A stage, for the state x, means g, branches b of laws, and inputs u. Writes the rates "
             "of the state to out; to rows, for the ledger, the power of ports, heat and entropy "
@@ -172,7 +160,7 @@ class _Printer:
             ["x", "g", "b", "u", "p", "out", "rows", "s", "m"],
             doc,
             self.frame.computed(stage.quantities, writes),
-            local=[end for _, found in made for end in found],
+            local=[end for _, group in results for end in group],
         )
 
     def slopes(self) -> str:
@@ -181,11 +169,11 @@ class _Printer:
         for place in self.coupling.places:
             target = self._at(place.shared, place.lanes, place.bank)
             writes.append(Write(f"{self.words['out']}[{target}]", place.value, place.bank))
-        computed = {quantity.name for quantity in self.made.slopes.quantities}
+        computed = {quantity.name for quantity in self.step.slopes.quantities}
         means = {field.name for field in self.given} & computed
         banks = {name: bank for name, bank in self.banks.items() if name not in means}
         lines = replace(self.frame.lines, arrays=banks)
-        body = self.frame.computed(self.made.slopes.quantities, writes, lines=lines)
+        body = self.frame.computed(self.step.slopes.quantities, writes, lines=lines)
         doc = "Derivative of the rates by the state, on branches b; the tables tell its entries"
         known = {self.names[name] for name in means}
         return self.frame.function(
@@ -193,57 +181,57 @@ class _Printer:
         )
 
     def sizes(self) -> str:
-        """Return the function that tells how many numbers each array has."""
-        stage = self.made.stage
+        """Return the function of the sizes of arrays, numbers of lanes and first rows."""
+        stage = self.step.stage
         banks = [f"{bank}_count" for bank in self.program.counts]
         counted = {
-            "states": [Slot(f.name, f.bank) for f in self.program.states],
-            "means": [Slot(f.name, f.bank) for f in self.means],
-            "branches": [Slot(f.name, f.bank) for f in self.branches],
+            "states": [field.slot for field in self.program.states],
+            "means": [field.slot for field in self.means],
+            "branches": [field.slot for field in self.branches],
             "booked": [row.slot for row in stage.booked],
-            "processes": [Slot(f.name, f.bank) for f in self.program.processes],
+            "processes": [field.slot for field in self.program.processes],
         }
         out, body, local = self.words["out"], list[str](), list[Definition]()
         for n, (what, slots) in enumerate(counted.items()):
-            at = places(slots, f"end_{what}", self.made.stage.taken)
+            at = places(slots, f"end_{what}", stage.taken)
             local += ends(at)
             body.append(f"{out}[{n}] = {at.size if slots else 0}; /* {what} */")
         total = self._at(len(self.coupling.entries), dict(self.coupling.sizes), None)
         body.append(f"{out}[{len(counted)}] = {total}; /* slopes */")
         first, states = len(counted) + 1, range(len(self.program.states))
         body += [f"{out}[{first + n}] = {count}; /* lanes */" for n, count in enumerate(banks)]
-        at = places(counted["states"], "end_states", self.made.stage.taken)
+        at = places(counted["states"], "end_states", stage.taken)
         first += len(banks)
         body += [f"{out}[{first + n}] = {at.position(n)}; /* first row */" for n in states]
-        if self.made.stage.bends:
-            at = places([row.slot for row in self.made.stage.bends], "end_bends", stage.taken)
+        if stage.bends:
+            at = places([row.slot for row in stage.bends], "end_bends", stage.taken)
             local += ends(at)
             body.append(f"{out}[{first + len(states)}] = {at.size}; /* bends */")
         doc = "How many numbers there are of each kind; lanes of each bank; first row of each state"
-        kept = used_only(body, [*self.frame.sizes(), *local], [self.words["p"]])
-        head = f"static void {self.name}_sizes(const {self.name}_reals *p, long *{out})"
-        head = head.replace(" *p,", f" *{self.words['p']},")
+        p = self.words["p"]
+        kept = used_only(body, [*self.frame.sizes(), *local], [p])
+        head = f"static void {self.name}_sizes(const {self.name}_reals *{p}, long *{out})"
         return "\n".join([*comment(doc), head, "{", *indented([*kept, *body]), "}"])
 
     def tables(self) -> str:
         """Return the tables by which the equations of a step are solved."""
-        limits = [int(limit.strict) for limit in self.made.stage.limits]
+        limits = [int(limit.strict) for limit in self.step.stage.limits]
         head = ["/* Integrands have kinks: see run/engine. */", "#define BENDS"]
-        head = head if self.made.stage.bends else []
+        head = head if self.step.stage.bends else []
         head += ["enum {", f"    {self.name}_limits = {len(limits)}, /* margins of a stage */"]
         records = len(self.program.states)
-        used = {name for mean in self.made.means for name in names(mean.value)}
+        used = {name for mean in self.step.means for name in names(mean.value)}
         read = [n for n, state in enumerate(self.program.states) if state.name in used]
         head += [f"    {self.name}_reads = {len(read)}, /* states that integrands read */"]
         head += [f"    {self.name}_records = {records}, /* states, a bank's counted once */"]
-        taker = f"{self.name}_heated = {self.made.heated}"
+        taker = f"{self.name}_heated = {self.step.heated}"
         head += [f"    {taker}, /* the state that takes a dissipative step's loss */"]
-        head += [f"    {self.name}_jumps = {int(self.made.jumps)} /* whether a law jumps */", "};"]
+        head += [f"    {self.name}_jumps = {int(self.step.jumps)} /* whether a law jumps */", "};"]
         head += [*table(f"{self.name}_strict", limits), *table(f"{self.name}_read", read)]
         return "\n".join([*head, *self.coupling.tables(self.name)])
 
     def _at(self, shared: int, lanes: dict[str, int], bank: str | None) -> str:
-        """Return a place after `shared` numbers and some rows of lanes."""
+        """Return the place after `shared` numbers and some rows of lanes."""
         terms = [str(shared)] if shared or not lanes else []
         for name, rows in lanes.items():
             if rows:

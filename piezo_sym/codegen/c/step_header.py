@@ -1,6 +1,6 @@
-"""The header of a model's step in C: what it takes and books.
+"""The header of a model's step in C.
 
-Input: a `Program`, and what a step books.  Output: the text of ``<model>_step.h``.
+Input: a `Program` and its `Collocation`.  Output: the text of ``<model>_step.h``.
 """
 
 from collections.abc import Iterator
@@ -68,29 +68,29 @@ _EXAMPLE = """Example: cc -O3 -fopenmp-simd example.c {model}.c {model}_step.c -
 """
 
 
-def c_step_header(program: Program, made: Collocation) -> str:
+def c_step_header(program: Program, step: Collocation) -> str:
     """Return the text of the header of a model's step."""
-    doc = "\n".join(f" * {line}".rstrip() for line in _doc(program, made))
+    doc = "\n".join(f" * {line}".rstrip() for line in _doc(program, step))
     indent = " " * len(f"int {program.name}_step(")
-    example = _example(program, made) if has_defaults(program) else ""
+    example = _example(program, step) if has_defaults(program) else ""
     words = {"opening": opening(program), "model": program.name, "p": pointer_name(program)}
     return _TEXT.format(**words, doc=doc, indent=indent, example=example)
 
 
-def _example(program: Program, made: Collocation) -> str:
+def _example(program: Program, step: Collocation) -> str:
     """Return a program that takes a thousand steps, as part of a comment."""
     name, counts = program.name, program.counts
     inputs = ", ".join(str(program.defaults[field.name]) for field in program.inputs) or "0.0"
     sizes = {
         "n": sum(counts[field.bank] if field.bank else 1 for field in program.states),
-        "booked": sum(counts[r.slot.bank] if r.slot.bank else 1 for r in made.stage.booked),
+        "booked": sum(counts[r.slot.bank] if r.slot.bank else 1 for r in step.stage.booked),
     }
     text = _EXAMPLE.format(model=name, inputs=inputs, **sizes)
     return "\n *\n" + "\n".join(f" * {line}".rstrip() for line in text.splitlines())
 
 
-def _doc(program: Program, made: Collocation) -> Iterator[str]:
-    """Yield the lines of what a step does, with the unit of each argument."""
+def _doc(program: Program, step: Collocation) -> Iterator[str]:
+    """Yield the description of the function, and of each argument with its unit."""
     yield from wrapped(
         "Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's "
         "method. The booked energies and entropies close both balances to round-off. Returns 1 if "
@@ -108,7 +108,7 @@ def _doc(program: Program, made: Collocation) -> Iterator[str]:
     ports = ", ".join(field.name for field in program.outputs)
     processes = ", ".join(field.spread for field in program.processes)
     known = len(program.outputs) + 2 * len(program.processes)
-    bodies = ", ".join(record.slot.label for record in made.stage.booked[known:])
+    bodies = ", ".join(record.slot.label for record in step.stage.booked[known:])
     yield from wrapped(
         f"booked, written: energy supplied [J] by {ports or 'no port'}; then heat [J], and then "
         f"entropy produced [J/K], by {processes or 'no process'}"

@@ -1,8 +1,8 @@
-"""How C spells the parts of an expression.
+"""The spelling of expressions in C.
 
-Input: a tree and the C names of what stands in it.  Output: one line of C99.  Small whole powers
-are products, kinks are calls of ``pick``, and a quotient of numbers stays one: it is rounded
-once, as in NumPy.  The functions that a text calls and <math.h> lacks are in `helpers`.
+Input: a tree and the C names of its symbols.  Output: one line of C99.  Small whole powers are
+products, choices are calls of ``pick``, and a quotient of numbers stays a quotient: it is rounded
+once, as in NumPy.  `helpers` defines the functions that a text calls and <math.h> lacks.
 """
 
 import re
@@ -26,14 +26,14 @@ from piezo_sym.expressions.text import (
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Sym, rebuild
 from piezo_sym.expressions.tree import names as names_in
 
-#: Functions of ``real``, one number or one per lane: the head of a step has the first, real.h both.
+#: Functions of ``real``; the head of a step defines them for numbers, real.h for vectors, too.
 REALS = {name: f"{record.in_c}_of" for name, record in RECORDS.items() if record.smooth}
-#: How ``real`` is compared: by macros, since not all numbers that it may be know ``>``.
+#: Macros that compare ``real``, since not every type that it may be has ``>``.
 ABOVE = {"": "is_above", "=": "is_at_least"}
 _CONSTANT = re.compile(r"-?[\d.]+(?:e[-+]?\d+)?(?:/[\d.]+)?")
-#: Beyond, a power calls the library; such exponents do not occur in laws of nature.
+#: Powers with larger exponents, which laws of nature do not have, call the library.
 MOST_FACTORS = 8
-#: Whole numbers up to here are floating-point numbers without rounding.
+#: Whole numbers up to here are exact as doubles.
 EXACT = 2**53
 _PICK = ("int condition, double a, double b", "condition ? a : b")
 _HELPERS = {"pick": _PICK} | {n: r.c_helper for n, r in RECORDS.items() if r.c_helper}
@@ -111,7 +111,7 @@ def real_style(plain: Style) -> Style:
 
 
 def widened(value: Piece) -> str:
-    """Return the text of a value, a number as one of every width."""
+    """Return the text of a value, with numbers as ``real`` of any width."""
     return f"wide({value[0]})" if _CONSTANT.fullmatch(value[0]) else value[0]
 
 
@@ -124,20 +124,20 @@ def with_branches(node: Expr) -> Expr:
     """Return an expression with dead zones of short arguments as branches.
 
     ``f*deadzone(z, w)`` is ``0 if abs(z) <= w else f*(z - copysign(w, z))``, for w >= 0: inside the
-    zone nothing is divided, and in a loop over lanes a compiler makes masks of such branches. What
-    is not a number stays so.
+    zone nothing is divided, and in a loop over lanes a compiler makes masks of such branches. A NaN
+    stays a NaN.
     """
     inner = rebuild(node, with_branches)
     match inner:
         case Call("deadzone", (z, w)) if _short(z) and _short(w):
             beyond = add(z, neg(Call("copysign", (w, z))))
             return If(ZERO, Cmp("<=", Call("abs", (z,)), w), beyond)
-        case Mul(left, If(then, condition, other)) if then == ZERO and _plain(left):
+        case Mul(left, If(then, condition, other)) if then == ZERO and not isinstance(left, If):
             return If(ZERO, condition, mul(left, other))
-        case Mul(If(then, condition, other), right) if then == ZERO and _plain(right):
+        case Mul(If(then, condition, other), right) if then == ZERO and not isinstance(right, If):
             return If(ZERO, condition, mul(other, right))
-        case Div(If(then, condition, other), bottom) if then == ZERO and _plain(bottom):
-            return If(ZERO, condition, div(other, bottom))
+        case Div(If(then, condition, other), right) if then == ZERO and not isinstance(right, If):
+            return If(ZERO, condition, div(other, right))
         case Neg(If(then, condition, other)) if then == ZERO:
             return If(ZERO, condition, neg(other))
     return inner
@@ -145,11 +145,6 @@ def with_branches(node: Expr) -> Expr:
 
 def _short(node: Expr) -> bool:
     return isinstance(node, Sym | Num) or (isinstance(node, Neg) and isinstance(node.arg, Sym))
-
-
-def _plain(node: Expr) -> bool:
-    """Return whether a factor holds no choice of its own."""
-    return not isinstance(node, If)
 
 
 def c_piece(node: Expr, style: Style) -> Piece:

@@ -1,1 +1,1 @@
-"""NumPy: a module that says all about a model, and computes its functions of many states."""
+"""NumPy: a module that describes a model, and computes its functions for many states at once."""

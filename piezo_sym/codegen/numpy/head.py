@@ -1,12 +1,12 @@
-"""The head of a NumPy module: what it is, its records, its parameters.
+"""The head of a NumPy module: its docstring, records and parameters.
 
-Input: a `Program`.  Output: text.  It has no date, no path and no host, so that it only changes
-when the spec or the generator does.
+Input: a `Program`.  Output: text.  It has no date, path or host, so that it changes only when the
+spec or the generator does.
 """
 
 from collections.abc import Iterable
 
-from piezo_sym.codegen.program import Described, Program, described
+from piezo_sym.codegen.program import Described, Program, head_lines
 from piezo_sym.expressions import functions
 from piezo_sym.spec.names import fresh
 
@@ -55,7 +55,7 @@ LANES = '''def _lanes(value, count, ndim):
     return value.reshape(*value.shape, *(1,) * (ndim - value.ndim))'''
 
 
-#: The public right-hand side: allocates, and goes through a large batch part by part.
+#: The public right-hand side, which allocates the result and splits a large batch into parts.
 RATES = '''_BLOCK = 150_000  # numbers in one part of a large batch: they fit in the cache
 
 
@@ -81,7 +81,8 @@ def head(program: Program, text: str = "") -> str:
     p, counts = fresh("p", program.taken), "Parameters."
     notes = ["Arrays have shape (n, *batch); values are in SI units."]
     parts = [
-        '"""' + "\n".join([*described(program, _plain, notes, (p, "Parameters()"), counts), '"""']),
+        '"""'
+        + "\n".join([*head_lines(program, _plain, notes, (p, "Parameters()"), counts), '"""']),
         f"{standard}\n\nimport numpy as np",
         *definitions[1:],
         f'NAME = "{program.name}"\nSPEC_SHA256 = "{program.sha256}"',
@@ -99,7 +100,7 @@ def head(program: Program, text: str = "") -> str:
 
 
 def _joined(parts: Iterable[str]) -> str:
-    """Return blocks with one empty line between them, two around classes and functions."""
+    """Return blocks separated by one empty line, or by two around classes and functions."""
     text = ""
     for part in parts:
         wide = part.startswith(("class", "@", "def", "_BLOCK", "_Lanes")) or text.rstrip().endswith(
@@ -110,7 +111,7 @@ def _joined(parts: Iterable[str]) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return text from a spec (printable, one line) so that it cannot end or escape a docstring."""
+    """Return text from a spec (printable, one line), changed so that it cannot end a docstring."""
     return text.replace("\\", "/").replace('"', "'")
 
 

@@ -10,8 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import accumulate
 from typing import final
 
-from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.layout import Places, places, size_in_words, terms
+from piezo_sym.codegen.layout import Places, places, size_in_words, term_lines
 from piezo_sym.codegen.numpy.head import RATES, head
 from piezo_sym.codegen.numpy.style import NUMPY, numpy_text
 from piezo_sym.codegen.program import (
@@ -29,7 +28,7 @@ from piezo_sym.expressions.tree import ZERO, Add, Expr, LaneSum, Node, Sym, name
 from piezo_sym.spec.names import fresh
 
 WIDTH = 96
-#: Both sides of a choice are computed: what is not chosen may be a root of a negative number.
+#: `np.where` computes both sides of a choice, and the other may be a root of a negative number.
 QUIET = '@np.errstate(divide="ignore", invalid="ignore")'
 PARTIAL = re.compile(r"/|\*\*\(|np\.(sqrt|log|power)")
 
@@ -49,17 +48,16 @@ class _Printer:
     def __init__(self, program: Program) -> None:
         self.program = program
         self.lanes = program.lane_names()
-        self.arrays = _certain(program)
+        self.arrays = _names_with_lane_axis(program)
         words = {word: fresh(word, program.taken) for word in ("x", "u", "p", "out", "lanes")}
         self.x, self.u, self.p, self.out, self.index = words.values()
         self.words = words
-        slots = [Slot(field.name, field.bank) for field in program.states]
-        self.states = places(slots, "end", program.taken)
+        self.states = places([field.slot for field in program.states], "end", program.taken)
 
     # Functions
 
     def function(self, function: ModuleFunction) -> str:
-        """Return one function with a row a slot."""
+        """Return one function of the module."""
         if function.name == "rhs":
             return f"{RATES}\n\n\n{self._rates(function)}"
         roots = [tree for row in function.rows for tree in (row.listed or (row.value,))]
@@ -72,22 +70,24 @@ class _Printer:
             return _body(lines)
         rows = self._rows(function)
         lines += [] if rows is self.states else rows.definitions()
-        lines.append(f"{self.out} = {self._array(function, rows)}")
+        initial = function.name == "initial_state"
+        empty = f"np.empty(({rows.size}, *{self.x}.shape[1:]))"
+        lines.append(f"{self.out} = {f'np.zeros({rows.size})' if initial else empty}")
         for n, row in enumerate(function.rows):
-            if function.name == "initial_state" and row.value == ZERO and not row.listed:
+            if initial and row.value == ZERO and not row.listed:
                 continue
             text = self._listed(row) if row.listed else numpy_text(row.value)
-            lines += self._assign(f"{self.out}[{rows.index(n)}]", text, row.value)
+            lines += _assignment(f"{self.out}[{rows.index(n)}]", text, row.value)
         return _body([*lines, f"return {self.out}"])
 
     def _rates(self, function: ModuleFunction) -> str:
-        """Return the function that writes the rates of a state, or of a part of a batch."""
+        """Return the function that writes the rates of a batch, or of a part of it."""
         doc = "Write the rates dx/dt into `out`"
         roots = [row.value for row in function.rows]
         lines = self._opening("_rates", ("x", "u", "p", "out"), doc, None, roots)
         for n, row in enumerate(function.rows):
             target = f"{self.out}[{self.states.index(n)}]"
-            lines += self._assign(target, numpy_text(row.value), row.value)
+            lines += _assignment(target, numpy_text(row.value), row.value)
         return _body(lines)
 
     def jacobian(self) -> str:
@@ -101,7 +101,7 @@ class _Printer:
         return _body([*lines, f"return {self.out}"])
 
     def margins(self) -> str:
-        """Return the function that tells how far inside its domain a state is."""
+        """Return the function of the margins, by which the conditions of the domain hold."""
         limits = self.program.limits
         doc = "Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes"
         doc += "; shape (len(DOMAIN), *batch)"
@@ -112,11 +112,11 @@ class _Printer:
         for n, limit in enumerate(limits):
             text = numpy_text(limit.margin)
             if bank_of(limit.margin, self.lanes):
-                own = {*names(limit.margin)} <= parameters
-                text = f"np.min({text if own else self._laned(limit.margin)}, axis=0)"
+                constant = {*names(limit.margin)} <= parameters
+                text = f"np.min({text if constant else self._with_lane_axis(limit.margin)}, axis=0)"
                 lines.append(f"{self.out}[{n}] = {text}")
             else:
-                lines += self._assign(f"{self.out}[{n}]", text, limit.margin)
+                lines += _assignment(f"{self.out}[{n}]", text, limit.margin)
         return _body([*lines, f"return {self.out}"])
 
     # Parts of a function
@@ -129,7 +129,7 @@ class _Printer:
         function: ModuleFunction | None,
         roots: Iterable[Node],
     ) -> list[str]:
-        """Return a function's first lines: its name, what it unpacks, the quantities it needs."""
+        """Return the first lines of a function: its head, unpacked arguments and quantities."""
         quantities, used = needed(self.program.quantities, roots)
         words = [self.words[argument] for argument in arguments]
         shape = "" if function is None else f"; shape {_shape(function)}"
@@ -143,19 +143,19 @@ class _Printer:
         lines += self.states.definitions()
         rows = function.rows if function else ()
         listed = {name for row in rows for part in row.listed for name in names(part)}
-        lines += self._unpacked(used, f"{self.x}.ndim" if "x" in arguments else "1", listed)
+        lines += self._unpacking(used, f"{self.x}.ndim" if "x" in arguments else "1", listed)
         note = ""
         for quantity in quantities:
             if quantity.note != note:
                 note = quantity.note
                 lines.append(f"# {note}")
-            lines += self._define(quantity)
+            lines += self._definition(quantity)
         return [*lines, "# result"] if quantities and not (function and function.scalar) else lines
 
-    def _unpacked(
+    def _unpacking(
         self, used: frozenset[str], dimensions: str, listed: Collection[str]
     ) -> Iterator[str]:
-        """Yield what takes names from arguments; lanes are picked from those in lists."""
+        """Yield the lines that unpack used names from arguments; `listed` ones are made arrays."""
         program = self.program
         for field in program.parameters:
             if field.name in used and field.bank:
@@ -171,13 +171,13 @@ class _Printer:
             if field.name in used:
                 yield f"{field.name} = {self.u}[{n}]"
 
-    def _define(self, quantity: Quantity) -> list[str]:
+    def _definition(self, quantity: Quantity) -> list[str]:
         text = numpy_text(quantity.value)
         if isinstance(quantity.value, LaneSum):
-            text = f"np.sum({self._laned(quantity.value.arg)}, axis=0)"
-        return self._assign(quantity.name, text, quantity.value)
+            text = f"np.sum({self._with_lane_axis(quantity.value.arg)}, axis=0)"
+        return _assignment(quantity.name, text, quantity.value)
 
-    def _laned(self, value: Expr) -> str:
+    def _with_lane_axis(self, value: Expr) -> str:
         """Return an expression's text, with an axis of lanes even if its parameters have none."""
         text = piece(value, NUMPY)
         if bank_of(value, self.arrays):
@@ -186,35 +186,20 @@ class _Printer:
         ones = f"np.ones(({bank}_count, *(1,) * ({self.x}.ndim - 1)))"
         return f"{enclose(text, PRODUCT)}*{ones}"
 
-    def _assign(self, target: str, text: str, value: Expr) -> list[str]:
-        """Return an assignment; a sum too long for a line gets a line a term."""
-        if len(target) + len(text) + 7 <= WIDTH or not isinstance(value, Add):
-            return [f"{target} = {text}"]
-        return [
-            f"{target} = (",
-            *(f"    {term}" for term in terms(value, lambda part: piece(part, NUMPY))),
-            ")",
-        ]
-
     def _listed(self, row: OutputRow) -> str:
-        """Return a value per lane, each of its own lane's parameters."""
+        """Return the tuple of a row's values per lane, each with the parameters of its lane."""
         parts = list[str]()
         for lane, value in enumerate(row.listed):
-            own = {name: f"{name}[{lane}]" for name in names(value) if name in self.lanes}
-            parts.append(numpy_text(rename(value, own)))
+            items = {name: f"{name}[{lane}]" for name in names(value) if name in self.lanes}
+            parts.append(numpy_text(rename(value, items)))
         return f"({', '.join(parts)})"
 
     def _rows(self, function: ModuleFunction) -> Places:
         """Return the places of a function's rows."""
         slots = [row.slot for row in function.rows]
-        same = slots == self.states.slots
-        taken = [*self.program.taken, *self.states.ends.values()]
-        return self.states if same else places(slots, "end", taken)
-
-    def _array(self, function: ModuleFunction, rows: Places) -> str:
-        if function.name == "initial_state":
-            return f"np.zeros({rows.size})"
-        return f"np.empty(({rows.size}, *{self.x}.shape[1:]))"
+        if slots == self.states.slots:
+            return self.states
+        return places(slots, "end", [*self.program.taken, *self.states.ends.values()])
 
     def _entry(self, entry: Entry) -> Iterator[str]:
         rows, cols = self.states.slots[entry.row], self.states.slots[entry.col]
@@ -222,7 +207,8 @@ class _Printer:
         same = rows.bank is not None and rows.bank == cols.bank
         joint = "="
         for outer in entry.outer:
-            left, right = self._spread(outer.left, ":, None"), self._spread(outer.right, "None")
+            left = self._factor(outer.left, ":, None")
+            right = self._factor(outer.right, "None")
             yield f"{self.out}[{place}] {joint} {left}*{right}"
             joint = "+="
         if entry.value == ZERO:
@@ -233,23 +219,35 @@ class _Printer:
             second = self.states.position(entry.col)
             shift = "" if entry.row == entry.col else f" + ({second} - ({first}))"
             place = f"{self.index}, {self.index}{shift}"
-        lines = self._assign(f"{self.out}[{place}]", numpy_text(entry.value), entry.value)
+        lines = _assignment(f"{self.out}[{place}]", numpy_text(entry.value), entry.value)
         yield lines[0].replace(" = ", f" {joint} ", 1)
         yield from lines[1:]
 
-    def _spread(self, value: Expr, index: str) -> str:
+    def _factor(self, value: Expr, index: str) -> str:
+        """Return a factor of a product over pairs of lanes, its lanes along one of two axes."""
         if bank_of(value, self.lanes) is None:
             return enclose(piece(value, NUMPY), UNARY)
-        return f"({self._laned(value)})[{index}]"
+        return f"({self._with_lane_axis(value)})[{index}]"
 
 
-def _certain(program: Program) -> dict[str, str]:
-    """Return the bank of every name that surely has an axis of lanes: not by parameters alone."""
-    found = {field.name: field.bank for field in program.states if field.bank}
+def _assignment(target: str, text: str, value: Expr) -> list[str]:
+    """Return an assignment; a sum that is too long for a line gets one line per term."""
+    if len(target) + len(text) + 7 <= WIDTH or not isinstance(value, Add):
+        return [f"{target} = {text}"]
+    terms = term_lines(value, lambda part: piece(part, NUMPY))
+    return [f"{target} = (", *(f"    {term}" for term in terms), ")"]
+
+
+def _names_with_lane_axis(program: Program) -> dict[str, str]:
+    """Return the bank of every name that depends on a state of it, so that it has an axis of lanes.
+
+    What depends on parameters alone may be one number for all lanes.
+    """
+    lanes = {field.name: field.bank for field in program.states if field.bank}
     for quantity in program.quantities:
-        if quantity.bank and bank_of(quantity.value, found):
-            found[quantity.name] = quantity.bank
-    return found
+        if quantity.bank and bank_of(quantity.value, lanes):
+            lanes[quantity.name] = quantity.bank
+    return lanes
 
 
 def _body(lines: list[str]) -> str:
@@ -258,7 +256,7 @@ def _body(lines: list[str]) -> str:
 
 
 def _choices(text: str) -> Iterator[str]:
-    """Yield what stands in the parentheses of each choice."""
+    """Yield the arguments of each call of `np.where`."""
     for part in text.split("np.where(")[1:]:
         depths = accumulate(((c == "(") - (c == ")") for c in part), initial=1)
         yield part[: next((n for n, depth in enumerate(depths) if not depth), None)]
@@ -268,10 +266,6 @@ def _shape(function: ModuleFunction) -> str:
     """Return the shape of a result, for its docstring."""
     if function.scalar:
         return "(*batch)"
-    batch = "" if function.name == "initial_state" else " *batch"
-    rows = (
-        "n"
-        if function.name in {"rhs", "initial_state"}
-        else size_in_words([r.slot for r in function.rows])
-    )
-    return f"({rows},{batch})"
+    if function.name == "initial_state":
+        return "(n,)"
+    return f"({size_in_words([row.slot for row in function.rows])}, *batch)"

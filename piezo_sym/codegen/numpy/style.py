@@ -1,4 +1,4 @@
-"""How NumPy spells the parts of an expression.
+"""The spelling of expressions in NumPy.
 
 Input: a tree.  Output: one line of NumPy.  A dead zone prints as ``z - clip(z, -w, w)``, one pass
 over an array instead of five.
@@ -28,7 +28,7 @@ STRENGTHS = {"atom": ATOM, "sum": SUM}
 @final
 @dataclass(frozen=True)
 class _Operand:
-    """A piece as the text of a record takes it: ``{x:sum}`` is in parentheses if it needs them."""
+    """A piece in the template of a record, where ``{x:sum}`` adds parentheses if x needs them."""
 
     piece: Piece
 

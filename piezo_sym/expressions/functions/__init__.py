@@ -1,4 +1,4 @@
-"""The functions of laws, one record each: all that any stage has to know of a function.
+"""The functions of laws, one record each with all that any stage has to know of it.
 
 Input: nothing.  Output: the records, by name.  To add a function, add its record to `smooth` or
 `kinked`, and a test.
@@ -12,7 +12,7 @@ from piezo_sym.expressions.functions.smooth import SMOOTH
 
 __all__ = ["FUNCTIONS", "INF", "RECORDS", "LawFunction"]
 
-#: Every function, those that only lowering makes among them.
+#: Every function, including those that no spec can write.
 RECORDS: Mapping[str, LawFunction] = {record.name: record for record in (*SMOOTH, *KINKED)}
 #: The functions of the law language.
 FUNCTIONS: Mapping[str, LawFunction] = {

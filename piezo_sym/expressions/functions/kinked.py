@@ -1,6 +1,6 @@
 """The functions of laws that have kinks.
 
-Input: nothing.  Output: `KINKED`, a record each; see `record` for what it says, and in which words.
+Input: nothing.  Output: `KINKED`, one record per function; see `record` for the fields.
 """
 
 from piezo_sym.expressions.functions.record import LawFunction

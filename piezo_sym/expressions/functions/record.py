@@ -1,9 +1,9 @@
-"""What a record of a law function says.
+"""The record of a law function.
 
 Input: nothing.  Output: the type `LawFunction`.  Rules are texts of the law language, in which x
-and w are the arguments and y the value; `calculus` makes trees of them.  A fact is true for all
-real numbers: a clause of comparisons, with ``|`` between them, of which one holds; what is known on
-the function's domain alone has as first comparison that the argument is outside it.
+and w are the arguments and y the value; `calculus` parses them.  A fact is a clause: comparisons
+joined by ``|``, at least one of which holds, for all real numbers.  If a fact is about the domain
+of the function alone, its first comparison says that the argument is outside.
 """
 
 import math
@@ -21,33 +21,33 @@ class LawFunction:
 
     Attributes
     ----------
-    name : in laws, C and SymPy, and of its method of FLINT's balls, where nothing else is said.
+    name : in laws and SymPy, of the method of FLINT's balls, and in C unless `c` is given.
     slopes : its derivatives by its arguments; at a kink, those of one of its sides.
-    units : ``pure`` (neither argument nor value has one), ``equal`` (of all arguments and value;
-        those of a table's x, and of its y),
-        ``none`` (any argument, a value without) or ``power`` (as the power `power`).
-    choices : its branches, if it has kinks; of a `width` they are for w >= 0.
+    units : ``pure``: neither argument nor value has a unit; ``equal``: arguments and value have the
+        same (of a table, all x, and all y and the value); ``none``: any argument, a value without
+        unit; ``power``: those of the power `power`.
+    choices : its branches, if it has kinks; with a `width`, for w >= 0.
     formula : the same by functions with fewer kinks, for every w.
     knots : whether its arguments are one number and the knots (x_k, y_k) of a piecewise linear
         function, whose pieces `calculus` makes; the x_k have to increase.
-    jumps : whether it is not continuous.
+    jumps : whether it is discontinuous.
     width : whether its second argument is a width, taken to be >= 0.
     degree : f(c*x, c*w) = c**degree * f(x, w) for all c > 0, if there is such a number.
-    power : which power of its argument it is, if it is one.
+    power : the exponent, if it is a power of its argument.
     parity : f(-x, w) = -f(x, w) is ``odd``, f(-x, w) = f(x, w) ``even``.
     rises : 1 if a smooth function increases strictly (an even one: for x >= 0), else 0.
-    domain : where it has a value; "" is everywhere.  Of a smooth function of two, w > 0, too.
+    domain : where it has a value; "" is everywhere.  A smooth function of two needs w > 0, too.
     sign : y > 0, or y >= 0 and zero at zero alone, wherever it has a value.
-    known : a rational argument at which the value is rational, and that value.
-    bounds : between which rational numbers the values lie.
-    largest : arguments beyond it are not looked at one by one: the value is above every double.
+    known : a rational argument with a rational value, and that value.
+    bounds : rational bounds of its values.
+    largest : the argument beyond which the value exceeds every double.
     integral : an antiderivative by x, where it is of use.
-    facts : what solvers are told, beside that it rises: see the comment at each.
-    numpy, c : how they spell it; NumPy's may be a text with places x and w, whose outermost
+    facts : known to solvers besides monotony; a comment at each says why it holds.
+    numpy, c : its names there; `numpy` may be a template with places x and w, whose outermost
         operator is `binds`.
-    numpy_helper : an import and a definition that a NumPy module needs to spell it so.
-    c_helper : parameters and value in C, where <math.h> lacks it.
-    written : whether a spec may write it; others are made by lowering.
+    numpy_helper : the import and the definition that `numpy` needs.
+    c_helper : parameters and value in C, if <math.h> lacks it.
+    written : whether a spec may write it; the others are made by lowering.
     about, example : one line on it, and a law with it, for users.
     """
 

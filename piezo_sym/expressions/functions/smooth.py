@@ -1,6 +1,6 @@
 """The smooth functions of laws.
 
-Input: nothing.  Output: `SMOOTH`, a record each; see `record` for what it says, and in which words.
+Input: nothing.  Output: `SMOOTH`, one record per function; see `record` for the fields.
 """
 
 from fractions import Fraction

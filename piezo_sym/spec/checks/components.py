@@ -11,12 +11,12 @@ from piezo_sym.spec.unit_text import quantity
 
 
 def check_component(spec: Tables, where: str, component: Component, model: Tables) -> None:
-    """Check a component of a spec; `model` is its own, without components.
+    """Check a component of a spec; `model` is the component's, flat.
 
     Raises
     ------
     SpecError
-        Naming what it has not, or does not fit.
+        If the component names something that does not exist, or with another unit.
     """
     check_name(where.removeprefix("components."), where)
     used = {node for e in model.elements.values() for _, node in e.named("node")}
@@ -34,7 +34,7 @@ def check_component(spec: Tables, where: str, component: Component, model: Table
                 _check_fits(place, what, given, own, theirs[name])
     for name in component.without:
         _check_known(f"{where}.without", "element", name, model.elements, model)
-    _check_left(where, component, model)
+    _check_left_out(where, component, model)
 
 
 def _check_known(where: str, what: str, name: str, known: Iterable[str], model: Tables) -> None:
@@ -46,7 +46,7 @@ def _check_known(where: str, what: str, name: str, known: Iterable[str], model: 
 def _check_fits(
     where: str, what: str, given: str, known: Mapping[str, Any], meant: Parameter | Input
 ) -> None:
-    """Refuse a name that this spec does not have, or that has another unit than is meant."""
+    """Refuse a name that this spec does not have, or whose unit differs from that of `meant`."""
     if given not in known:
         example = f'{given} = {{ value = 1.0, unit = "{meant.unit}" }}'
         example = example.replace("value = 1.0, ", "") if what == "input" else example
@@ -62,7 +62,7 @@ def _check_fits(
         raise SpecError(f"{quote(given)} is {quantity(found)}", where, quantity(needed))
 
 
-def _check_left(where: str, component: Component, model: Tables) -> None:
+def _check_left_out(where: str, component: Component, model: Tables) -> None:
     """Refuse to leave out everything, or a body that another element names."""
     gone = {*component.without}
     if gone >= model.elements.keys():

@@ -1,7 +1,7 @@
-"""Energies of a spec: fields that go together, and stores that are none of one state.
+"""Energies of a spec: fields that go together, and laws of stores that depend on one state.
 
-A capacitance that depends on a temperature is no energy of its charge alone: with the body's
-entropy it is one of two states, which a `storage` says.
+A capacitor whose capacitance depends on a temperature has no energy of its charge alone, but one of
+its charge and the body's entropy, for which there is the kind `storage`.
 """
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from piezo_sym.spec.tables import temperatures
 
 
 def check_energies(spec: Tables) -> None:
-    """Check what elements that store energy say of it."""
+    """Check the fields and laws of elements that store energy."""
     warm = temperatures(spec)
     hot = {"T": next(iter(warm.values()), ""), **warm, **{f"T_{b}": b for b in warm.values()}}
     for name, element in spec.elements.items():
@@ -30,7 +30,7 @@ def check_energies(spec: Tables) -> None:
 
 
 def _check_law(spec: Tables, law: LawField, hot: Mapping[str, str]) -> None:
-    """Refuse a law of a store that depends on a temperature; `hot`: the body of each."""
+    """Refuse a law of a store that depends on a temperature; `hot` is the body of each."""
     word = next((w for w in names(law.tree) if w in hot and w not in spec.parameters), "")
     if not word:
         return
@@ -45,7 +45,10 @@ def _check_law(spec: Tables, law: LawField, hot: Mapping[str, str]) -> None:
 
 
 def _storage(spec: Tables, name: str, body: str, word: str) -> str:
-    """Return the storage of a store and a body, whose temperature is that of the body alone."""
+    """Return the text of a `storage` that has the energy of a store and of the body it names.
+
+    `word` is the temperature in the store's law; the body's own law is put in its place.
+    """
     (store,) = (p for p in spec.elements[name].ports(name) if isinstance(p, Storage))
     heat = next(p for p in spec.elements[body].ports(body) if isinstance(p, Body))
     own = replace(store.law, {word: heat.law})

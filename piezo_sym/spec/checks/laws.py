@@ -1,4 +1,4 @@
-"""References and laws of a spec: what they name exists, and the text is of the law language."""
+"""References and laws of a spec: names in them exist, and texts are of the law language."""
 
 from collections import ChainMap
 from collections.abc import Collection, Mapping
@@ -29,12 +29,12 @@ from piezo_sym.spec.tables import (
     temperatures,
 )
 
-#: The states of each bank, which the laws of its own lanes see.
+#: The states of each bank, which only laws of the same bank may use.
 Cells = dict[str, dict[str, None]]
 
 
 def check_texts(spec: Tables) -> None:
-    """Check that the text of each law can be read; what uses it does not know its place."""
+    """Check that each law can be parsed; later errors could not name its place."""
     for law in laws(spec):
         parse_law(law.text, law.where)
 
@@ -74,7 +74,7 @@ def _unknown_reference(
     return SpecError(what, where)
 
 
-#: What a law may not name: it enters through inputs.
+#: Names for time, which enters through inputs only.
 TIME = ("t", "time")
 
 
@@ -110,12 +110,11 @@ def check_laws(spec: Tables) -> None:
 
 
 def _check_letters(law: LawField, words: Collection[str], meant: Mapping[str, str]) -> None:
-    """Refuse a letter that is also another quantity's name, and could mean either."""
+    """Refuse a letter that is also the name of another quantity, so that it could mean either."""
     for word in names(law.tree):
         if word in law.letters and word in words and meant.get(word) != word:
             what = f"{quote(word)} is a letter of this law, and a name of this spec"
-            remedy = "rename the parameter or state"
-            raise SpecError(what, law.where, "one meaning", remedy)
+            raise SpecError(what, law.where, "one meaning", "rename the parameter or state")
 
 
 def _check_banks(condition: Condition, lanes: Mapping[str, str]) -> None:
@@ -127,9 +126,9 @@ def _check_banks(condition: Condition, lanes: Mapping[str, str]) -> None:
 
 
 def _check_temperature(spec: Tables, condition: Condition) -> None:
-    """Refuse ``T`` in [domain] where it is a temperature of the spec, and could be the only body's.
+    """Refuse ``T`` in [domain] where it could be a declared temperature or that of the only body.
 
-    Of another unit it is no letter's twin: then it means what the spec calls so.
+    A parameter or input called T that is no temperature cannot be confused with it.
     """
     own = (table["T"] for table in (spec.parameters, spec.inputs) if "T" in table)
     alike = any(parse_unit(entry.unit).dimension == parse_unit("K").dimension for entry in own)
@@ -148,7 +147,7 @@ def _check_initial(spec: Tables) -> None:
         where = f"initial.{symbol}"
         if symbol not in known:
             what = f"{quote(symbol)} is no state of this spec"
-            remedy = _entropy_of(spec, symbol, start) or _meant_state(spec, symbol)
+            remedy = _start_entropy(spec, symbol, start) or _meant_state(spec, symbol)
             raise SpecError(what, where, remedy=remedy)
         count = sizes.get(lanes.get(symbol, ""))
         if isinstance(start, tuple) and len(start) != count:
@@ -168,11 +167,11 @@ def _check_words(
     words: Collection[str],
     element: str = "",
 ) -> None:
-    """Refuse names that are neither letters nor words; `element`: whose law it is."""
+    """Refuse names that are neither in `letters` nor in `words`; `element` is the law's."""
     for word in names(tree):
         if word in letters or word in words:
             continue
-        remedy = _meant_letter(spec, word, letters, element)
+        remedy = _state_in_law(spec, word, letters, element)
         if word in LETTERS:
             expected = f"the letters {listing(letters)}" if letters else "parameters"
             if {*spec.inputs} <= {*words} and states(spec).keys() <= {*words}:
@@ -194,8 +193,8 @@ def _check_words(
         raise SpecError(f"unknown name {quote(word)}", where, remedy=remedy)
 
 
-def _meant_letter(spec: Tables, word: str, letters: tuple[str, ...], element: str) -> str:
-    """Return what to write for a state's symbol in a law; nothing if the word is no state's."""
+def _state_in_law(spec: Tables, word: str, letters: tuple[str, ...], element: str) -> str:
+    """Return why a law cannot name this state, and what to write; empty if it is no state."""
     owner = states(spec).get(word, "")
     if not owner or not element:
         return ""
@@ -208,20 +207,20 @@ def _meant_letter(spec: Tables, word: str, letters: tuple[str, ...], element: st
 
 
 def _states_of_letter(spec: Tables, letter: str, words: Collection[str]) -> str:
-    """Return which symbols a letter may stand for, outside of laws, where it has no meaning."""
+    """Return the symbols that a letter may be meant for where letters have no meaning."""
     if letter == "T" and (hot := [word for word in temperatures(spec) if word in words]):
         return f"temperatures go by their bodies: {listing(hot)}"
-    found = [s for s, name in states(spec).items() if spec.elements[name].letter == letter]
-    meant = [symbol for symbol in found if symbol in words]
+    owners = states(spec).items()
+    meant = [s for s, name in owners if spec.elements[name].letter == letter and s in words]
     return f"states go by their own symbols: {listing(meant)}" if meant else ""
 
 
-def _entropy_of(spec: Tables, word: str, start: object) -> str:
-    """Return how a body starts at a temperature, if the word is one."""
-    found = [body for body in bodies(spec) if word in (f"T_{body}", "T")]
-    if not found or word in spec.parameters or word in spec.inputs:
+def _start_entropy(spec: Tables, word: str, start: object) -> str:
+    """Return how to start a body at a temperature, if `word` is its symbol; else an empty text."""
+    body = next((body for body in bodies(spec) if word in (f"T_{body}", "T")), "")
+    if not body or word in spec.parameters or word in spec.inputs:
         return ""
-    element = spec.elements[body := found[0]]
+    element = spec.elements[body]
     state = next(s.symbol for s in element.own_states(body) if s.is_entropy)
     kelvin = start if isinstance(start, float) else 300.0
     return (
@@ -232,12 +231,11 @@ def _entropy_of(spec: Tables, word: str, start: object) -> str:
 
 
 def _meant_state(spec: Tables, word: str) -> str:
-    """Return which state was meant: by a letter, an element's name, or a symbol like it."""
+    """Return the state that may be meant by a letter, an element's name or a similar symbol."""
     known = states(spec)
-    if word in spec.parameters or word in spec.inputs:
-        table = "parameters" if word in spec.parameters else "inputs"
-        return f"its value is given in [{table}]; states: {listing(known)}"
-    own = [symbol for symbol, name in known.items() if name == word]
-    if own:
-        return f"the state of element {quote(word)} is {quote(own[0])}"
+    for table in ("parameters", "inputs"):
+        if word in getattr(spec, table):
+            return f"its value is given in [{table}]; states: {listing(known)}"
+    if symbol := next((symbol for symbol, name in known.items() if name == word), ""):
+        return f"the state of element {quote(word)} is {quote(symbol)}"
     return _states_of_letter(spec, word, known) or nearest(word, known)

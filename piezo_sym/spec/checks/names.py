@@ -1,4 +1,4 @@
-"""Names of a spec: well formed, not taken, and not twice."""
+"""Names of a spec: well formed, not reserved, and unique."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -11,7 +11,7 @@ from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import check_name, check_symbol
 from piezo_sym.spec.tables import bank_of, bank_states, banks, bodies
 
-#: Variables that every result has; see `run`.
+#: Variables of every result; see `run`.
 RESULTS = frozenset({"time", "energy", "entropy", "energy_residual", "entropy_residual"})
 LARGEST = Fraction(10) ** 300
 SMALLEST = 1 / LARGEST
@@ -32,7 +32,7 @@ def check_names(spec: Tables) -> None:
     for symbol, where in symbols:
         check_symbol(symbol, where, taken)
     _check_unique(symbols)
-    _check_kept(spec, symbols)
+    _check_reserved(spec, symbols)
     for name, parameter in spec.parameters.items():
         given = parameter.value if isinstance(parameter.value, tuple) else (parameter.value,)
         _check_unit(parameter.unit, given, f"parameters.{name}")
@@ -82,7 +82,7 @@ def _check_case(elements: Iterable[str]) -> None:
 
 
 def _check_banks(spec: Tables) -> None:
-    """Check that banks have names of their own, and the elements of one the same count."""
+    """Check that no bank has an element's name, and that its elements agree in their count."""
     same = {bank: name for name, bank in bank_of(spec).items()}
     for name, bank in bank_of(spec).items():
         where = f"elements.{name}"
@@ -96,18 +96,17 @@ def _check_banks(spec: Tables) -> None:
                 what = f"bank {quote(bank)} has another {field} in {quote(same[bank])}"
                 raise SpecError(what, f"{where}.{field}", f"{other}, not {given}")
     for name, element in spec.elements.items():
-        for field in ("bank", "series"):
-            alone = getattr(element, "count", None) is None
-            if getattr(element, field, None) is not None and alone:
+        for field in ("bank", "series") if getattr(element, "count", None) is None else ():
+            if getattr(element, field, None) is not None:
                 raise SpecError(f"{field} is given without count", f"elements.{name}", "both")
 
 
 def _quantities(spec: Tables) -> Iterator[tuple[str, str]]:
-    """Yield the names that lanes of banks give to quantities, and their banks."""
+    """Yield the names of the quantities that banks have per lane, and their banks."""
     for name, bank in bank_of(spec).items():
         for port in spec.elements[name].ports(name):
-            found = (getattr(port, field, "") for field in ("costate", "output", "effort", "rate"))
-            yield from ((own, bank) for own in found if own)
+            words = (getattr(port, field, "") for field in ("costate", "output", "effort", "rate"))
+            yield from ((word, bank) for word in words if word)
 
 
 def _check_unique(symbols: list[tuple[str, str]]) -> None:
@@ -122,19 +121,19 @@ def _check_unique(symbols: list[tuple[str, str]]) -> None:
         seen[symbol] = where
 
 
-def _check_kept(spec: Tables, symbols: list[tuple[str, str]]) -> None:
-    """Refuse symbols that results, lanes, temperatures or bank sizes are called by."""
+def _check_reserved(spec: Tables, symbols: list[tuple[str, str]]) -> None:
+    """Refuse symbols that are names of results, lanes, temperatures or bank sizes."""
     sizes = banks(spec)
     results = {f"{prefix}{name}" for prefix in PREFIXES for name in spec.elements}
-    kept = dict.fromkeys(RESULTS | results, "a variable of every result")
-    kept |= {f"{name}_count": f"the size of bank '{name}'" for name in (*spec.elements, *sizes)}
-    kept |= dict.fromkeys(sizes, "the dimension of a bank")
-    kept |= {f"T_{name}": f"the temperature of '{name}'" for name in bodies(spec)}
+    uses = dict.fromkeys(RESULTS | results, "a variable of every result")
+    uses |= {f"{name}_count": f"the size of bank '{name}'" for name in (*spec.elements, *sizes)}
+    uses |= dict.fromkeys(sizes, "the dimension of a bank")
+    uses |= {f"T_{name}": f"the temperature of '{name}'" for name in bodies(spec)}
     lanes = {s: f"bank state '{s}'" for s in bank_states(spec)}
     lanes |= {p: f"'{p}'" for p, entry in spec.parameters.items() if isinstance(entry.value, tuple)}
-    lanes |= {own: f"bank '{bank}'" for own, bank in _quantities(spec)}
+    lanes |= {word: f"bank '{bank}'" for word, bank in _quantities(spec)}
     for symbol, where in symbols:
-        use = kept.get(symbol)
+        use = uses.get(symbol)
         base, _, lane = symbol.rpartition("_")
         if base in lanes and re.fullmatch(r"j|\d+", lane):
             use = f"a lane of {lanes[base]}"

@@ -1,11 +1,12 @@
-"""Values of a spec: lanes of the right number, starts that exist, all inside the domain.
+"""Values of a spec: as many as there are lanes, finite, and inside the domain.
 
-Parameters and the inputs' defaults are what their doubles are, exactly; initial states and
-temperatures may be balls.  A condition that these do not decide refuses nothing here.
+Parameters and defaults of inputs are the exact rationals of their doubles; initial states and
+temperatures may be balls.  A condition that these cannot decide is not refused here.
 """
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -31,7 +32,7 @@ Values: TypeAlias = tuple[Value, ...]
 
 
 def check_values(spec: Tables) -> None:
-    """Check lists against banks, then knots and conditions of the domain, lane by lane."""
+    """Check lists against the sizes of banks, then knots and the domain, lane by lane."""
     _check_lists(spec)
     lanes: dict[str, Values] = {n: (Fraction(entry.si),) for n, entry in spec.inputs.items()}
     lanes |= {name: tuple(map(Fraction, p.lanes)) for name, p in spec.parameters.items()}
@@ -42,34 +43,33 @@ def check_values(spec: Tables) -> None:
         element = spec.elements[body]
         ports, field = element.ports(body), next(law.field for law in element.laws(body))
         law = next(port.law for port in ports if isinstance(port, Body))
-        values = _at(0, names(law), lanes)
+        values = _in_lane(0, names(law), lanes)
         lanes[symbol] = (_value(law, values, f"elements.{body}.{field}"),)
-    for condition in (*conditions(spec), *_of_starts(spec)):
+    for condition in (*conditions(spec), *_start_conditions(spec)):
         _check_condition(condition, lanes)
 
 
 def are_all_margins(spec: Tables) -> bool:
-    """Return whether conditions of the domain are all that values must keep."""
+    """Return whether the values of a spec have to satisfy the conditions of its domain alone."""
     ordered = any(names(condition.tree) for condition in orders(spec))
-    return not ordered and not any(_of_starts(spec))
+    return not ordered and not any(_start_conditions(spec))
 
 
-def _of_starts(spec: Tables) -> Iterator[Condition]:
-    """Yield the conditions on where states start."""
+def _start_conditions(spec: Tables) -> Iterator[Condition]:
+    """Yield the conditions that kinds impose on initial states."""
     for name, element in spec.elements.items():
         yield from (
             Condition(f"elements.{name}", test) for test in element.row.form.starts(element, name)
         )
 
 
-def _at(lane: int, words: Iterable[str], lanes: Mapping[str, Values]) -> dict[str, Value]:
-    """Return the values that names have in a lane, counted from 0."""
-    here = {word: lanes[word] for word in words}
-    return {word: values[lane if len(values) > 1 else 0] for word, values in here.items()}
+def _in_lane(lane: int, words: Iterable[str], lanes: Mapping[str, Values]) -> dict[str, Value]:
+    """Return the values of names in a lane, counted from 0."""
+    return {word: lanes[word][lane if len(lanes[word]) > 1 else 0] for word in words}
 
 
 def _count(words: Iterable[str], lanes: Mapping[str, Values]) -> int:
-    """Return in how many lanes names have values of their own; 1 if all lanes are alike."""
+    """Return the number of lanes in which names have values; 1 if all lanes are alike."""
     return max((len(lanes[word]) for word in words), default=1)
 
 
@@ -95,23 +95,20 @@ def _starts(spec: Tables, symbol: str, lanes: Mapping[str, Values]) -> Iterator[
     for n, tree in enumerate(parts):
         words = names(tree)
         for lane in range(_count(words, lanes)) if len(parts) == 1 else (n,):
-            yield _value(tree, _at(lane, words, lanes), f"initial.{symbol}")
+            yield _value(tree, _in_lane(lane, words, lanes), f"initial.{symbol}")
 
 
 def _value(tree: Expr, values: Mapping[str, Value], where: str) -> Value:
-    try:
-        found = value_of(tree, values)
-        finite = math.isfinite(float(found))
-    except (ArithmeticError, ValueError):
-        finite = False
-    if not finite:
-        what = f"has no finite real value{_shown(values)}"
-        raise SpecError(what, where, remedy="check the values of its parameters")
-    return found
+    with suppress(ArithmeticError, ValueError):
+        value = value_of(tree, values)
+        if math.isfinite(float(value)):
+            return value
+    what = f"has no finite real value{_values_text(values)}"
+    raise SpecError(what, where, remedy="check the values of its parameters")
 
 
-def _shown(values: Mapping[str, Value]) -> str:
-    """Return the values of names, as they end a sentence."""
+def _values_text(values: Mapping[str, Value]) -> str:
+    """Return the values of names as the end of a sentence."""
     given = ", ".join(f"{word} = {float(value):.6g}" for word, value in values.items())
     return f": {given}" * bool(given)
 
@@ -125,7 +122,7 @@ def _check_condition(
     words = names(condition.tree)
     count = _count(words, lanes)
     for lane in range(count):
-        values = _at(lane, words, lanes)
+        values = _in_lane(lane, words, lanes)
         try:
             outside = not holds(condition.tree, values)
         except TooCloseError:
@@ -133,7 +130,6 @@ def _check_condition(
         except (ArithmeticError, ValueError):
             outside = True
         if outside:
-            what += _shown(values)
             at = f" in lane {lane + 1}" if count > 1 else ""
             expected = quote(condition_text(condition.tree)) + at
-            raise SpecError(what, condition.where, expected, remedy)
+            raise SpecError(what + _values_text(values), condition.where, expected, remedy)

@@ -1,4 +1,4 @@
-"""The kinds of elements, by the name that a spec gives them: a type each, made of its row."""
+"""The kinds of elements by their names in a spec: one type per kind, made from its row."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -10,7 +10,7 @@ from piezo_sym.spec.elements.domains import DOMAINS
 from piezo_sym.spec.elements.kinds import TABLE
 from piezo_sym.spec.elements.ports import Coupling
 
-KINDS: Mapping[str, type[Element]] = {kind.name: kind.made() for kind in TABLE}
+KINDS: Mapping[str, type[Element]] = {kind.name: kind.element_type() for kind in TABLE}
 globals().update({kind.__name__: kind for kind in KINDS.values()})  # where pickle looks for them
 #: The letters of laws: of variables, states and T.
 LETTERS = frozenset(v.letter for d in DOMAINS for v in (d.across, d.through)) | {"T"}
@@ -18,15 +18,15 @@ LETTERS |= {kind.form.letter for kind in TABLE}
 
 
 def kind_of(*role: Any) -> Kind:
-    """Return the kind whose form has some role, such as the store of a domain."""
+    """Return the kind whose form has a role, such as ``("dissipation", ELECTRICAL)``."""
     return next(kind for kind in TABLE if kind.form.role == role)
 
 
 def with_ratio_in(unit: Dimension, element: Element) -> Iterator[Kind]:
-    """Yield the kinds that couple the same domains as an element, with a ratio of some unit."""
+    """Yield the kinds that couple the domains which `element` couples, by a ratio in `unit`."""
     couplings = (port for port in element.ports("") if isinstance(port, Coupling))
     pairs = [{port.first_domain, port.second_domain} for port in couplings]
     for kind in TABLE:
-        for one, other, own in kind.form.ratios:
-            if {one, other} in pairs and parse_unit(own).dimension == unit:
+        for first, second, ratio_unit in kind.form.ratios:
+            if {first, second} in pairs and parse_unit(ratio_unit).dimension == unit:
                 yield kind

@@ -1,7 +1,7 @@
-"""What every kind of element is: a frozen record of spec fields that states its ports.
+"""The base of all kinds of elements: a frozen record of spec fields that gives its ports.
 
-Input: a row of the table of kinds.  Output: a pydantic type whose values state `Port` records.  A
-kind has a `Form`, which says its fields, its docstring and its ports; see `forms`.
+Input: a row of the table of kinds.  Output: a pydantic type whose values give `Port` records.  A
+kind has a `Form`, which holds its fields, its docstring and its ports; see `forms`.
 """
 
 from collections.abc import Callable, Iterator
@@ -40,9 +40,9 @@ _LANES = (
     "sum of theirs, which starts at `count` times `initial`."
 )
 ACROSS, ENTROPY_UNIT = PowerVariable.ACROSS, "J/K"
-#: A place in an element, what is wrong there, what is expected, and the remedy.
+#: A place in an element, the fault there, what is expected, and the remedy.
 Fault = tuple[str, str, str, str]
-#: Where types of elements are found by their names, when they are unpickled.
+#: The module in which pickle looks up the types of elements.
 MODULE = "piezo_sym.spec.elements"
 
 
@@ -69,22 +69,22 @@ class State:
 @final
 @dataclass(frozen=True, eq=False)
 class Form:
-    """What a kind is: a store, a dissipation, a coupling, a source, a body ...; see `forms`.
+    """What kinds are made of: a store, a dissipation, a coupling, a source, a body; see `forms`.
 
     Attributes
     ----------
-    fields : what a spec says of it; nodes first.
+    fields : the fields of a spec, nodes first.
     doc : its law, state and signs, in words.
-    ports : the ports of an element called `name` that stands in a branch.
-    role : what `kind_of` finds it by.
-    one_of : fields of which exactly one is to be given, such as a law and its inverse.
-    letter, unit : of its state; empty for those without one.
-    fault : what is wrong with fields taken together.
-    requires : the conditions that an element called `name` adds to the domain.
-    starts : the conditions on where its states start.
-    has_lanes : whether it may stand for many of its kind, a bank.
-    joins : whether many of an element are joined into one, and no bank.
-    ratios : of a coupling, the domains that it couples and the unit of its ratio.
+    ports : (element, its name, its branch) -> the ports.
+    role : the key by which `kind_of` finds it.
+    one_of : fields of which exactly one has to be given, such as a law and its inverse.
+    letter, unit : of its state; empty if it has none.
+    fault : element -> a fault of its fields taken together, if there is one.
+    requires : (element, its name) -> the conditions that it adds to the domain.
+    starts : (element, its name) -> the conditions on its initial states.
+    has_lanes : whether an element may be a bank, by `count`.
+    joins : element -> whether `count` of them are joined into one state instead.
+    ratios : the pairs of domains that a coupling may couple, with the unit of its ratio.
     """
 
     fields: Fields
@@ -109,9 +109,9 @@ class Kind:
 
     Attributes
     ----------
-    name : as a spec gives it.
+    name : as `kind` gives it in a spec.
     about : what it is, on one line.
-    form : what it is to a spec and to a network.
+    form : its fields and its ports.
     """
 
     name: str
@@ -121,13 +121,13 @@ class Kind:
     @property
     def fields(self) -> Fields:
         """The fields of its elements."""
-        found = dict(self.form.fields)
-        first: Fields = {name: found.pop(name) for name in ("between", "at") if name in found}
+        others = dict(self.form.fields)
+        nodes: Fields = {name: others.pop(name) for name in ("between", "at") if name in others}
         lanes = self.form.has_lanes
         types = {"count": Count | None, "bank": BankName, "series": Ends} if lanes else {}
         count: Fields = {name: (kind, None, None) for name, kind in types.items()}
         state: Fields = {"state": (StateName, None, None)} if self.form.letter else {}
-        return {**first, **count, **found, **state}
+        return {**nodes, **count, **others, **state}
 
     @property
     def doc(self) -> str:
@@ -141,15 +141,15 @@ class Kind:
         given = {name: sample for name, (*_, sample) in self.fields.items() if sample}
         return f"{self.name} = {inline({'kind': self.name, **given})}"
 
-    def made(self) -> "type[Element]":
-        """Return the type of its elements."""
+    def element_type(self) -> "type[Element]":
+        """Return the pydantic type of its elements."""
         title = "".join(word.capitalize() for word in self.name.split("_"))
         fields: Any = {name: field[:2] for name, field in self.fields.items()}
         fields["kind"] = (Literal[self.name], self.name)
         fields |= {"__base__": Element, "__module__": MODULE, "__doc__": self.doc}
-        made = cast("type[Element]", create_model(title, **fields))
-        made.row = self
-        return made
+        element = cast("type[Element]", create_model(title, **fields))
+        element.row = self
+        return element
 
 
 class Element(Frozen):
@@ -185,21 +185,21 @@ class Element(Frozen):
         return tuple(State(word, s.unit) for word, s in getattr(self, "states", {}).items())
 
     def bank_of(self, name: str) -> str | None:
-        """Return the bank that this element, called `name`, has one lane of: its own, or a cell's.
+        """Return the bank of this element, called `name`: that of its cell, or one named after it.
 
-        None where no `count` is given, or all are joined; a count of 1 is a bank, too.
+        None if no `count` is given, or if all are joined; a count of 1 is a bank, too.
         """
         given = getattr(self, "count", None) is not None and not self.row.form.joins(self)
         return (getattr(self, "bank", None) or name) if given else None
 
     @property
     def joined(self) -> int:
-        """How many alike are joined into this one."""
+        """How many equal elements are joined into this one."""
         return (getattr(self, "count", None) or 1) if self.row.form.joins(self) else 1
 
     @property
     def chain(self) -> Branch | None:
-        """The ends of the chain in which its lanes stand one after the other, if they do."""
+        """The two ends of the chain that its lanes form, if they are in series."""
         if self.bank_of("") is None:
             return None
         alone = getattr(self, "bank", None) is None
@@ -222,7 +222,7 @@ class Element(Frozen):
         return parse_law(getattr(self, field), field)
 
     def laws(self, name: str) -> Iterator[LawField]:
-        """Yield each law that is given of this element, called `name` in its spec."""
+        """Yield the laws of this element, called `name` in its spec."""
         for field, info in type(self).model_fields.items():
             text = getattr(self, field)
             for mark in info.metadata:
@@ -230,7 +230,7 @@ class Element(Frozen):
                     yield LawField(name, field, text, mark.of(self))
 
     def named(self, *to: str) -> Iterator[tuple[str, str]]:
-        """Yield (field, the name given) of what refers `to` 'node', 'input' or 'thermal_mass'."""
+        """Yield (field, name) for names of a 'node', 'input' or 'thermal_mass', as `to` says."""
         for field, info in type(self).model_fields.items():
             given = getattr(self, field)
             refers = any(isinstance(mark, Refers) and mark.to in to for mark in info.metadata)

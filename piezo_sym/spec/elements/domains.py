@@ -1,8 +1,8 @@
 """The physical domains: a row each, with its two variables and the states of its stores.
 
 Input: nothing; this is data.  Output: `DOMAINS`.  Across/through: a branch (a, b) has across e_a -
-e_b, and its through variable flows from a to b inside the element.  All else that is said of a
-domain (messages, units, names of quantities) is read from its row.
+e_b, and its through variable flows from a to b inside the element.  Messages, units and names of
+quantities of a domain are read from its row.
 """
 
 from dataclasses import dataclass
@@ -30,11 +30,11 @@ class PhysicalVariable:
 
     Attributes
     ----------
-    name : also the field of a dissipative law that gives it.
+    name : also that of the field for a dissipative law which gives it.
     unit, letter : its unit, and its letter in laws.
-    prefix : what names of quantities of this kind begin with, such as ``F`` of ``F_spring``.
-    sense : which way it counts along a branch, in words.
-    state, state_unit, state_letter : the state of a store that imposes it.
+    prefix : with which names of such quantities begin, ``F`` in ``F_spring``.
+    sense : its sign convention along a branch, in words.
+    state, state_unit, state_letter : the state of a store whose co-state it is.
     """
 
     name: str
@@ -59,7 +59,7 @@ class PhysicalDomain:
 
     Attributes
     ----------
-    name : as couplings call their pairs of nodes, and messages the domain.
+    name : in messages, and of the fields for a coupling's pairs of nodes.
     reference : the node at which the across variable is zero.
     node : another node, for examples.
     across, through : its two variables.
@@ -75,11 +75,11 @@ class PhysicalDomain:
 
     @property
     def mechanical(self) -> bool:
-        """Whether its inertias and sources stand at one node, the other being the reference."""
+        """Whether inertias and sources have one node, the other being the reference."""
         return self.effort is PowerVariable.THROUGH
 
     def variable(self, which: PowerVariable) -> PhysicalVariable:
-        """Return what the across or through variable is in this domain."""
+        """Return the across or the through variable of this domain."""
         return self.across if which is PowerVariable.ACROSS else self.through
 
 
@@ -124,8 +124,8 @@ HYDRAULIC = PhysicalDomain(
 )
 
 DOMAINS = (TRANSLATION, ELECTRICAL, ROTATION, HYDRAULIC)
-#: Where entropy flows between bodies; no spec has its nodes, so nothing stands between them but
-#: what names bodies.
+#: The domain in which entropy flows between bodies.  No spec can write its nodes, so only elements
+#: that name bodies are connected to them.
 THERMAL = PhysicalDomain(
     "thermal",
     ":zero",

@@ -1,7 +1,7 @@
 """The forms of dissipation, sources and couplings, each for any domain.
 
-A form says once, for all domains, its fields, its docstring and its ports; see `stores` and
-`thermal` for the others.
+Each function defines fields, docstring and ports once for all domains; see `stores` and `thermal`
+for the other forms.
 """
 
 from dataclasses import replace
@@ -24,12 +24,12 @@ from piezo_sym.spec.elements.ports import Branch, Coupling, DissipativePort, Por
 
 
 def dissipation(domain: PhysicalDomain, symbol: str, *gives: PowerVariable) -> Form:
-    """Return a law for one variable of a branch, given the other; their product heats a body.
+    """Return the form of a law from one variable of a branch to the other; the power heats a body.
 
     Parameters
     ----------
-    symbol : a law for the first of those that a law may give, in the example.
-    gives : what a law may give.
+    symbol : the law in the example, for the first of `gives`.
+    gives : the variables that a law may give.
     """
     pairs = {which: (domain.variable(which), domain.variable(which.other)) for which in gives}
     default, laws = None if len(gives) > 1 else ..., Fields()
@@ -72,7 +72,7 @@ def dissipation(domain: PhysicalDomain, symbol: str, *gives: PowerVariable) -> F
 
 
 def imposed(domain: PhysicalDomain, imposes: PowerVariable, symbol: str) -> Form:
-    """Return a variable of a branch that an input gives; `symbol` is one, in the example."""
+    """Return the form of a source: an input imposes a variable; `symbol` is that of the example."""
     given, output, at = domain.variable(imposes), domain.variable(imposes.other), domain.mechanical
     across, node = imposes is PowerVariable.ACROSS, "its node" if at else "its first node"
     relative = f"is that of {node}{'' if at else ' relative to its second'}"
@@ -100,13 +100,13 @@ def coupling(
     gyrates: bool = False,
     warm: bool = False,
 ) -> Form:
-    """Return a coupling of two pairs of nodes, named by their domains.
+    """Return the form of a coupling of two pairs of nodes, named by their domains.
 
     Parameters
     ----------
-    ratio, symbol : the field of its ratio, and a law for it in the example.
+    ratio, symbol : the field of its ratio, and the law for it in the example.
     first : the domain of its first pair.
-    second : that of the second, with the unit of the ratio; of several, one is to be given.
+    second : the domains that its second pair may have, with the unit of the ratio for each.
     alias : another name of the second pair.
     gyrates : whether through_1 = ratio*across_2, not across_1 = ratio*across_2.
     warm : whether the ratio may depend on the temperature of a body.
@@ -145,7 +145,7 @@ def coupling(
 
 
 def series(first: Form, second: Form) -> Form:
-    """Return a store and what is in series with it, behind a node of their own."""
+    """Return the form of a store and a dissipation in series, joined at an inner node."""
 
     def ports(element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
         (start, end), inner = branch, f"{name}:inner"
@@ -174,17 +174,17 @@ def _equations(
 
 
 def said(variable: PhysicalVariable, at: bool = False) -> str:
-    """Return a variable and how it counts; at one node, of that node."""
+    """Return a variable with its sign convention, in words; `at` one node or along a branch."""
     return f"{variable.word} {'at its node' if at else variable.sense}"
 
 
 def places(domain: PhysicalDomain, at: bool = False) -> Fields:
-    """Return the field of an element's node or nodes."""
+    """Return the field for an element's node (`at`), or for its two nodes."""
     if at:
         return {"at": (Node, ..., domain.node)}
     return {"between": (Pair, ..., [domain.node, domain.reference])}
 
 
 def placed(element: Any, branch: Branch, domain: PhysicalDomain) -> Branch:
-    """Return the branch, which for an element at one node ends at the reference."""
+    """Return the branch of an element; one that stands at a node ends at the reference."""
     return (element.at, domain.reference) if hasattr(element, "at") else branch

@@ -1,4 +1,4 @@
-"""The fields of kinds: types that say what a field refers to, or which law it is.
+"""The types of the fields of kinds, marked with what a field names, or with the units of a law.
 
 Input: nothing; these are the types.  Output: annotations for `base.Kind`.
 """
@@ -22,20 +22,20 @@ from piezo_sym.expressions.tree import Expr
 from piezo_sym.spec.elements.domains import DOMAINS
 
 MAX_COUNT = 1_000_000
-#: The fields of a kind: type with what it refers to, value if not given, value in an example.
+#: The fields of a kind: type, default, and value in the example.
 Fields = dict[str, tuple[Any, Any, Any]]
 
 
 @final
 @dataclass(frozen=True)
 class Letters:
-    """Marks a field as a law: the letters it may use besides parameters, and the units of all.
+    """Marks a field as a law: its unit, and the letters it may use besides parameters.
 
     Attributes
     ----------
     units : the unit of each letter, such as ``{"i": "A", "T": "K"}``.
     unit : the unit of the law itself.
-    instead : the unit of the law where some other field is given, by that field.
+    instead : pairs (field, unit): the unit of the law if that field is given.
     sees : whether it may use states and temperatures of other elements, by their names.
     own : whether its letters are the states that the element lists.
     """
@@ -72,7 +72,7 @@ class Letters:
 @final
 @dataclass(frozen=True)
 class LawField:
-    """A law of an element: its text and what its kind says of it."""
+    """A law of an element: its place, text, letters and units."""
 
     element: str
     field: str
@@ -98,7 +98,7 @@ class LawField:
 @final
 @dataclass(frozen=True)
 class Refers:
-    """Marks a field as names of something else: of a 'node', an 'input' or a 'thermal_mass'."""
+    """Marks a field that holds names, `to` a 'node', an 'input' or a 'thermal_mass'."""
 
     to: str
 
@@ -156,6 +156,6 @@ def law_field(
     sees: bool = False,
     **instead: str,
 ) -> tuple[Any, Any, Any]:
-    """Return a field that is a law; with None as its default it is one of several to choose."""
+    """Return a field that is a law; `default` None makes it optional, ``...`` required."""
     mark = Letters(letters, unit, tuple(instead.items()), sees)
     return (Annotated[Law | None if default is None else Law, mark], default, sample)

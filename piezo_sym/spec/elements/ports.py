@@ -1,7 +1,7 @@
-"""What elements are made of: the ports between an element and its network.
+"""The ports between an element and its network.
 
 Input: nothing; these are the types.  Output: frozen records that `network` connects and `iphs`
-reads.  An element states here, once, its law; it knows nothing of matrices.
+reads.  They hold the laws of elements, and know nothing of matrices.
 """
 
 from dataclasses import dataclass
@@ -26,8 +26,8 @@ class Storage:
     imposes : which variable the co-state is; the state's rate is the other one.
     units : of the state and of the co-state.
     doc : one line on the state.
-    energy : U as a function of states, the same for all stores that share it; without it, it is the
-        integral of `law` by the state.
+    energy : U as a function of states, the same for all stores that share it; None for the integral
+        of `law` over the state.
     """
 
     state: str
@@ -51,13 +51,13 @@ class DissipativePort:
     letter : the letter of the conjugate variable z in `law`; T is the heated body's temperature.
     field : the name of the law in the spec, for messages.
     output : name of W, such as ``V_hysteron``.
-    effort : name of z, where it is not simply a co-state.
+    effort : name of z, used where z is not just a co-state.
     imposes : which variable W is; z is the other one.
     heats : the element whose body takes the heat.
-    written : the law as the spec has it, in its own letter, where `law` is its inverse.
-    rate_letter, rate, state : of a slip, the letter of the rate in `law`, the rate's name, and the
-        state of the store that slips: its rate is this one less W.
-    limit : of a stop, the largest effort; steps follow its path, and the law is what `rhs` knows.
+    written : the law of the spec, in its own letter, if `law` is its inverse.
+    rate_letter, rate, state : for a slip, the letter of the driving rate in `law`, the name of that
+        rate, and the state x of the store that slips: x' = rate - W.
+    limit : for a stop, the largest effort; `rhs` evaluates `law`, steps follow the exact path.
     """
 
     letter: str
@@ -120,9 +120,9 @@ class Source:
 @final
 @dataclass(frozen=True)
 class Body:
-    """A body: entropy S as its state, its temperature dU/dS = law; `energy` as of `Storage`.
+    """A body: its state is the entropy S, its temperature dU/dS = law; `energy` as in `Storage`.
 
-    Where couplings carry entropy in and out of it, it has a branch with T across, S' through.
+    If couplings carry entropy in or out of it, it has a branch with T across and S' through.
     """
 
     domain: ClassVar[PhysicalDomain] = THERMAL
@@ -154,7 +154,7 @@ class Exchange:
 @final
 @dataclass(frozen=True)
 class HeatInput:
-    """Heat P that an input gives to a body: entropy P/T, y = T, power P."""
+    """Heat P from an input into a body: its entropy rises by P/T; y = T, power P."""
 
     body: str
     input: str

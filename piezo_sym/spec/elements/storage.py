@@ -1,7 +1,7 @@
 """The form of a storage: one energy of several states, each driven by a variable of a branch.
 
-What couples inside matter: variable inductance, variable capacitance, gas.  At most one of the
-states is an entropy; the element then is a body.
+It is for couplings inside matter: variable inductance, variable capacitance, gas.  At most one of
+the states is an entropy; the element then is a body.
 """
 
 from typing import Annotated, Any, Literal, final
@@ -17,7 +17,7 @@ from piezo_sym.spec.elements.ports import Body, Branch, Port, Storage
 from piezo_sym.spec.table import Table
 
 ENTROPY = "entropy"
-#: Of each rate, the domain, and which variable the co-state of its state is.
+#: For each rate, the domain, and which variable the co-state of such a state is.
 RATES: dict[str, tuple[PhysicalDomain, PowerVariable]] = {
     domain.variable(which).name: (domain, which.other)
     for domain in DOMAINS
@@ -70,7 +70,7 @@ def _ports(element: Any, name: str, _: Branch) -> tuple[Port, ...]:
 
 
 def _fault(element: Any) -> Fault | None:
-    """Return that it has more than one entropy, or a state no branch, or not this energy."""
+    """Return the first fault of its states: two entropies, a branch too many or few, no energy."""
     states = element.states
     entropies = [symbol for symbol, state in states.items() if state.rate == ENTROPY]
     if len(entropies) > 1:
