@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from piezo_sym.cli.output import about, console, row, table
+from piezo_sym.cli.output import about, console, print_table
 from piezo_sym.cli.words import pairs, signal
 from piezo_sym.files import write_text
 
@@ -49,12 +49,8 @@ def bench(
         )
     if json is not None:
         write_text(json, dumps(asdict(report), indent=1) + "\n")
-    columns = table(f"benchmark of {report.model}", *COLUMNS)
-    for one in report.rows:
-        row(columns, *one.cells)
-    screen = console()
-    screen.print(columns)
+    print_table(f"benchmark of {report.model}", COLUMNS, (row.cells for row in report.rows))
     for line in report.notes:
-        screen.print(Text(line))
+        console().print(Text(line))
     if json is not None:
         typer.echo(f"{json}")

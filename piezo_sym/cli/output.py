@@ -1,7 +1,7 @@
 """The output of commands: one console, and plain tables that also read well in a log."""
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -91,12 +91,11 @@ def console() -> Console:
     return terminal if terminal.is_terminal else Console(width=ENDLESS)
 
 
-def row(table: Table, *cells: str | Text) -> None:
-    """Add a row of plain text: markup in the texts of a spec has no effect."""
-    table.add_row(*(cell if isinstance(cell, Text) else Text(cell) for cell in cells))
-
-
-def table(title: str, *columns: str) -> Table:
-    """Return an empty table with a title and named columns."""
+def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str | Text]]) -> None:
+    """Print a table, unless it has no rows; markup in its cells has no effect."""
     heading = Text(title, style="bold", no_wrap=True, overflow="ignore")
-    return Table(*columns, title=heading, title_justify="left", box=box.SIMPLE_HEAD)
+    table = Table(*columns, title=heading, title_justify="left", box=box.SIMPLE_HEAD)
+    for row in rows:
+        table.add_row(*(cell if isinstance(cell, Text) else Text(cell) for cell in row))
+    if table.rows:
+        console().print(table)

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from piezo_sym.cli.output import console, row, table
+from piezo_sym.cli.output import print_table
 
 WIDTH = 100
 #: The source of the numbers of equations and assumptions.
@@ -36,10 +36,9 @@ def kinds(
         _show(kind, known[KINDS[kind].__name__])
         return
     title = f"Kinds of elements; more on one: piezo-sym kinds KIND. {PAPER}"
-    made = table(title, "kind", "what it is")
-    for name, element in KINDS.items():
-        row(made, name, known[element.__name__]["description"].partition("\n")[0])
-    console().print(made)
+    docs = {name: known[element.__name__]["description"] for name, element in KINDS.items()}
+    rows = ((name, doc.partition("\n")[0]) for name, doc in docs.items())
+    print_table(title, ("kind", "what it is"), rows)
 
 
 def _meant(kind: str) -> str:
@@ -56,14 +55,14 @@ def _show(kind: str, known: dict[str, Any]) -> None:
     *about, example = known["description"].split("\n\n")
     for part in about:
         typer.echo("\n".join(wrap(part, WIDTH)) + "\n")
-    made = table(f"Fields of {kind}", "field", "needed", "what it is")
     groups = known.get("allOf", ())
     either = {f for group in groups for choice in group["oneOf"] for f in choice["required"]}
+    rows = []
     for name, field in known["properties"].items():
         needed = "yes" if name in known["required"] else "one of" if name in either else ""
         default = f"default: {field['default']!r}" if field.get("default") is not None else ""
-        row(made, name, needed or default, field.get("description", ""))
-    console().print(made)
+        rows.append((name, needed or default, field.get("description", "")))
+    print_table(f"Fields of {kind}", ("field", "needed", "what it is"), rows)
     if NUMBERED.search(about[0]):
         typer.echo(f"{PAPER}\n")
     typer.echo(f"[elements]\n{example.removeprefix('Example: ')}")
@@ -74,22 +73,17 @@ def functions() -> None:
     from piezo_sym.expressions.functions import FUNCTIONS
 
     units = {"pure": "none", "none": "any; value none", "equal": "all equal", "power": "its power"}
-    made = table("Laws", "", "what it is", "units", "domain", "example")
-    for sign, about, example in OPERATORS:
-        row(made, sign, about, "", "", example)
-    for name, record in FUNCTIONS.items():
-        row(made, name, record.about, units[record.units], record.domain, record.example)
-    console().print(made)
+    rows = [(sign, about, "", "", example) for sign, about, example in OPERATORS]
+    rows += [(n, f.about, units[f.units], f.domain, f.example) for n, f in FUNCTIONS.items()]
+    print_table("Laws", ("", "what it is", "units", "domain", "example"), rows)
 
 
 def units() -> None:
     """List the units of values and inputs; each takes SI prefixes: uF, mm, kV."""
     from piezo_sym.expressions.units import known_units
 
-    made = table("Units, each with SI prefixes: uF, mm, kV", "unit", "name", "in SI")
-    for symbol, name, si in known_units():
-        row(made, symbol, name, si)
-    console().print(made)
+    title = "Units, each with SI prefixes: uF, mm, kV"
+    print_table(title, ("unit", "name", "in SI"), known_units())
     typer.echo("Joined by * and /, with powers: N*s/m, m**2, kg/m**3, N/(m/s)**(1/2), 1 (none).")
     typer.echo("No offsets: a temperature is given in K.")
 
@@ -105,6 +99,6 @@ def schema() -> None:
 
     #:schema ./piezo-sym.schema.json
     """
-    from piezo_sym.spec.schema import schema as of_specs
+    from piezo_sym.spec.schema import schema as spec_schema
 
-    typer.echo(json.dumps(of_specs(), indent=2))
+    typer.echo(json.dumps(spec_schema(), indent=2))

@@ -2,15 +2,12 @@
 
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from piezo_sym.cli.output import printed_at_the_end, warnings_as_lines
 from piezo_sym.progress import tracked
-
-if TYPE_CHECKING:
-    from piezo_sym.analysis.figures import PaperFigure
 
 
 def reproduce(
@@ -40,7 +37,7 @@ def _write(module: ModuleType, out: Path) -> None:
     from piezo_sym.analysis.style import save
 
     jobs = [(figure, value) for figure in FIGURES for value in figure.values]
-    done: dict[PaperFigure, list[Any]] = {figure: [] for figure in FIGURES}
+    done = {figure: list[Any]() for figure in FIGURES}
     with printed_at_the_end() as lines:
         for figure, value in tracked(jobs, "curves"):
             done[figure].append(figure.curve(module, value))

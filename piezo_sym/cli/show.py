@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from piezo_sym.cli.output import about, console, row, table
+from piezo_sym.cli.output import about, print_table
 from piezo_sym.errors import listing
 
 if TYPE_CHECKING:
@@ -59,25 +59,23 @@ def _elements(model: Model) -> None:
     """Print elements, inputs and parameters, with values in SI and defaults."""
     from piezo_sym.spec.flatten import inputs_of
 
-    made = table("Elements", "name", "kind", "where", "laws and values (SI)", "state at t = 0")
+    rows: list[tuple[str, ...]] = []
     for name, element in model.elements.items():
         laws = "\n".join(_laws(model, name, element))
         kind = f"{element.kind}, {element.joined} joined" if element.joined > 1 else element.kind
-        row(made, name, kind, _where(element), laws, _starts(model, name, element))
-    console().print(made)
-    made = table("Inputs", "name", "unit", "if not given", "what it is")
-    used = inputs_of(model.elements.values())
+        rows.append((name, kind, _where(element), laws, _starts(model, name, element)))
+    columns = ("name", "kind", "where", "laws and values (SI)", "state at t = 0")
+    print_table("Elements", columns, rows)
+    used, rows = inputs_of(model.elements.values()), []
     for name, entry in model.inputs.items():
         doc = entry.doc if name in used else f"{entry.doc} (no element uses it)".strip()
-        row(made, name, entry.dimension.si, f"{entry.si:g}", doc)
-    if model.inputs:
-        console().print(made)
-    made = table("Parameters", "name", "value (SI)", "unit", "what it is")
+        rows.append((name, entry.dimension.si, f"{entry.si:g}", doc))
+    print_table("Inputs", ("name", "unit", "if not given", "what it is"), rows)
+    rows = []
     for name, parameter in model.parameters.items():
         values = listing((f"{value:g}" for value in parameter.lanes), 8)
-        row(made, name, values, parameter.dimension.si, parameter.doc)
-    if model.parameters:
-        console().print(made)
+        rows.append((name, values, parameter.dimension.si, parameter.doc))
+    print_table("Parameters", ("name", "value (SI)", "unit", "what it is"), rows)
 
 
 def _where(element: Element) -> str:
@@ -151,7 +149,7 @@ def _joined(iphs: IPHS) -> Iterator[str]:
 
 
 def _domain(iphs: IPHS) -> Iterator[str]:
-    """Yield the conditions of the domain; those that kinds imply with their place."""
+    """Yield the conditions of the domain, with the place of those that kinds imply."""
     from piezo_sym.spec.tables import condition_text, conditions
 
     yield "\nDomain"

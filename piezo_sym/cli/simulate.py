@@ -6,13 +6,12 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from piezo_sym.cli.declared import Units
-from piezo_sym.cli.output import about, console, row, table, warnings_as_lines
-from piezo_sym.cli.words import numbers, pairs
+from piezo_sym.cli.output import about, print_table, warnings_as_lines
+from piezo_sym.cli.words import Units, numbers, pairs
 from piezo_sym.errors import (
     FileError,
     NetworkError,
@@ -42,12 +41,6 @@ INITIAL = "STATE=NUMBER or T_<body>=KELVIN at t = 0; SI; repeat."
 SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; repeat. As --set for units."
 SET = "PARAMETER=NUMBER in SI, whatever unit the spec has, or with its unit: L=1.2mH; repeat."
 
-Number: TypeAlias = float | None
-Count: TypeAlias = int | None
-Word: TypeAlias = str | None
-Words: TypeAlias = list[str] | None
-File: TypeAlias = Path | None
-
 
 def option(about: str, *names: str) -> Any:
     """Return an option of the command."""
@@ -57,24 +50,24 @@ def option(about: str, *names: str) -> Any:
 def simulate(
     spec: Annotated[str, typer.Argument(metavar="SPEC", help="Path or shipped name.")],
     duration: Annotated[float, option("Length of the run [s].")],
-    inputs: Annotated[Words, option(SIGNALS, "--input", "-i")] = None,
-    parameters: Annotated[Words, option(SET, "--set", "-p")] = None,
-    initial: Annotated[Words, option(INITIAL, "--initial")] = None,
-    continued: Annotated[File, option(CONTINUE, "--continue")] = None,
-    t0: Annotated[Number, option(T0, "--t0")] = None,
-    rtol: Annotated[Number, option("Relative tolerance; 1e-5 if left out.")] = None,
-    step: Annotated[Number, option("A fixed step [s] instead of --rtol.")] = None,
-    order: Annotated[Count, option(ORDER)] = None,
-    method: Annotated[Word, option(METHODS)] = None,
-    times: Annotated[Count, option(TIMES)] = None,
-    events: Annotated[Words, option(EVENTS, "--event")] = None,
-    stop: Annotated[Word, option(STOP)] = None,
-    outputs: Annotated[Word, option(OUTPUTS)] = None,
+    inputs: Annotated[list[str] | None, option(SIGNALS, "--input", "-i")] = None,
+    parameters: Annotated[list[str] | None, option(SET, "--set", "-p")] = None,
+    initial: Annotated[list[str] | None, option(INITIAL, "--initial")] = None,
+    continued: Annotated[Path | None, option(CONTINUE, "--continue")] = None,
+    t0: Annotated[float | None, option(T0, "--t0")] = None,
+    rtol: Annotated[float | None, option("Relative tolerance; 1e-5 if left out.")] = None,
+    step: Annotated[float | None, option("A fixed step [s] instead of --rtol.")] = None,
+    order: Annotated[int | None, option(ORDER)] = None,
+    method: Annotated[str | None, option(METHODS)] = None,
+    times: Annotated[int | None, option(TIMES)] = None,
+    events: Annotated[list[str] | None, option(EVENTS, "--event")] = None,
+    stop: Annotated[str | None, option(STOP)] = None,
+    outputs: Annotated[str | None, option(OUTPUTS)] = None,
     dissipative_start: Annotated[
         bool, option("Damp what rings after a jump of an input.", "--dissipative-start")
     ] = False,
     out: Annotated[
-        File, option("Result as .nc (NetCDF), .csv or .zarr (a store, written as it goes).")
+        Path | None, option("Result as .nc (NetCDF), .csv or .zarr (a store, written as it goes).")
     ] = None,
 ) -> None:
     """Simulate a spec's generated module and print its last values.
@@ -134,8 +127,8 @@ def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) ->
     _print(result)
     for name, hits in result.coords.items():
         if str(hits.attrs.get("long_name", "")).startswith("times of event"):
-            found = ", ".join(f"{t:.9g}" for t in hits.values[:4]) + ", ..." * (hits.size > 4)
-            typer.echo(f"event {name}, {hits.size} in all: t = {found or 'never'}")
+            first = ", ".join(f"{t:.9g}" for t in hits.values[:4]) + ", ..." * (hits.size > 4)
+            typer.echo(f"event {name}, {hits.size} in all: t = {first or 'never'}")
     if "stopped" in result.attrs:
         typer.echo(f"stopped: {result.attrs['stopped']}")
     for line in assumed:
@@ -191,8 +184,7 @@ def keeping(out: Path | None) -> Iterator[None]:
 
 
 def _print(result: xarray.Dataset) -> None:
-    end = float(result.time.values[-1])
-    columns = table(f"{result.attrs['model']} at t = {end:.6g} s", "", "value", "unit", "")
+    end, rows = float(result.time.values[-1]), []
     for name, variable in result.data_vars.items():
         values = variable.values[-1] if "time" in variable.dims else variable.values
         last = values.reshape(-1)  # for an event, the values at its hits
@@ -201,8 +193,8 @@ def _print(result: xarray.Dataset) -> None:
         value = ", ".join(f"{v:.6g}" for v in last[:4])
         more = ", ..." if last.size > 4 else ""
         unit, about = (str(variable.attrs.get(key, "")) for key in ("units", "long_name"))
-        row(columns, str(name), value + more, unit, about)
-    console().print(columns)
+        rows.append((str(name), value + more, unit, about))
+    print_table(f"{result.attrs['model']} at t = {end:.6g} s", ("", "value", "unit", ""), rows)
 
 
 def _write(result: xarray.Dataset, path: Path) -> None:

@@ -10,8 +10,7 @@ import typer
 from rich.text import Text
 
 from piezo_sym.cli.junit import junit_xml
-from piezo_sym.cli.output import STYLES, about, console, table
-from piezo_sym.cli.output import row as add_row
+from piezo_sym.cli.output import STYLES, about, console, print_table
 from piezo_sym.errors import ContradictionError, PiezoError, ProofError
 from piezo_sym.files import write_text
 
@@ -39,32 +38,32 @@ def verify(
         from piezo_sym.verification.recheck import check_installed
 
         check_installed()
-    found, errors = _reports(specs)
-    second = {spec: _rechecked(spec, report) for spec, report in found.items() if recheck}
+    reports, errors = _reports(specs)
+    second = {spec: _rechecked(spec, report) for spec, report in reports.items() if recheck}
     if junit is not None:
-        pairs = [(report, second.get(spec)) for spec, report in found.items()]
+        pairs = [(report, second.get(spec)) for spec, report in reports.items()]
         write_text(junit, junit_xml(pairs, errors))
-    _show(found, second, as_json=as_json)
+    _show(reports, second, as_json=as_json)
     for spec, opinion in second.items():
-        faults = opinion.faults(found[spec].information)
-        errors += [ProofError(faults[0], found[spec].model)] if faults else []
+        faults = opinion.faults(reports[spec].information)
+        errors += [ProofError(faults[0], reports[spec].model)] if faults else []
     for error in errors[:-1]:
         typer.echo(f"piezo-sym: {error}", err=True)
     if errors:
         raise errors[-1]
-    if not all(report.proved for report in found.values()):
+    if not all(report.proved for report in reports.values()):
         raise typer.Exit(1)
 
 
-def _show(found: dict[str, Report], second: dict[str, Recheck], *, as_json: bool) -> None:
+def _show(reports: dict[str, Report], second: dict[str, Recheck], *, as_json: bool) -> None:
     """Print the verdicts, as tables or as JSON, and those of the second program."""
-    for spec, report in found.items():
+    for spec, report in reports.items():
         if not as_json:
             _print(report)
         if spec in second:
             typer.echo(f"{report.model}, by a second program:\n{second[spec].said}", err=True)
     if as_json:
-        rows = [row for spec, report in found.items() for row in _rows(report, second.get(spec))]
+        rows = [row for spec, report in reports.items() for row in _rows(report, second.get(spec))]
         typer.echo(json.dumps(rows, indent=2))
 
 
@@ -108,17 +107,15 @@ def _rows(report: Report, second: Recheck | None) -> list[dict[str, object]]:
 
 
 def _print(report: Report) -> None:
-    columns = table(
-        f"{report.model}: {report.summary()}",
-        *("property", "element", "statement", "points", "verdict"),
-    )
+    cells = []
     for row in report.rows:
         points = f"{row.points:,}" if row.points else ""
         verdict = Text(row.verdict.value, style=STYLES[row.verdict.value])
         if not row.required:
             verdict = Text(f"{row.verdict.value} (information)", style="dim")
-        add_row(columns, row.id, row.element, row.statement, points, verdict)
-    console().print(columns)
+        cells.append((row.id, row.element, row.statement, points, verdict))
+    columns = ("property", "element", "statement", "points", "verdict")
+    print_table(f"{report.model}: {report.summary()}", columns, cells)
     for row in report.rows:
         if row.reason:
             console().print(_why(row), markup=False, highlight=False)

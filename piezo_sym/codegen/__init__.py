@@ -13,7 +13,7 @@ from piezo_sym.codegen.numpy.module import numpy_module
 from piezo_sym.codegen.program import MARK, Program
 
 Printer: TypeAlias = Callable[[Program, Collocation], str]
-#: The files of a module, by how their names end after the model's, and what prints each.
+#: The printer of each file of a module, by the ending of its name after the model's.
 PRINTERS: Mapping[str, Printer] = {
     ".py": lambda program, _: numpy_module(program),
     ".h": lambda program, _: c_header(program),
@@ -24,7 +24,7 @@ PRINTERS: Mapping[str, Printer] = {
 
 
 def printed(program: Program, step: Collocation) -> dict[str, str]:
-    """Return the text of each file of a module, by how its name ends after the model's."""
+    """Return the text of each file of a module, by the ending of its name after the model's."""
     return {ending: write(program, step) for ending, write in PRINTERS.items()}
 
 

@@ -9,6 +9,7 @@ lanes act on each other is an additional shared unknown: a border.  A step costs
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
+from textwrap import wrap
 from typing import final
 
 from piezo_sym.codegen.collocation import Slopes
@@ -162,8 +163,13 @@ class _Builder:
         size = len(self.states) + len(self.borders)
         meets = [(r, c) for bank in banks for r in bank.rows for c in bank.columns]
         return StepCoupling(
-            *(tuple(places), sizes, self.states, len(self.borders), tuple(pairs), tuple(banks)),
-            elimination(size, [*pairs, *meets]),
+            places=tuple(places),
+            sizes=sizes,
+            states=self.states,
+            borders=len(self.borders),
+            entries=tuple(pairs),
+            banks=tuple(banks),
+            elimination=elimination(size, [*pairs, *meets]),
         )
 
     def _bank(self, name: str) -> tuple[Bank, list[Expr]]:
@@ -235,10 +241,6 @@ def _ranges(name: str, parts: Sequence[Sequence[int]]) -> Iterator[str]:
 def table(name: str, numbers: Sequence[int]) -> Iterator[str]:
     """Yield a table of numbers; an empty one gets a zero, since C has no empty arrays."""
     yield f"static const int {name}[] = {{"
-    line = "   "
-    for n in numbers or (0,):
-        if len(line) + len(f" {n},") > WIDTH:
-            yield line
-            line = "   "
-        line += f" {n},"
-    yield from (line, "};")
+    text = " ".join(f"{n}," for n in numbers or (0,))
+    yield from (f"    {line}" for line in wrap(text, WIDTH - 4))
+    yield "};"

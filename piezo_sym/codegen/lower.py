@@ -91,8 +91,7 @@ def _output(placed: Placed) -> Described:
             return Described(placed.element, port.units[1], port.doc)
         case Exchange() | HeatInput() as port:
             return Described(placed.element, "K", f"temperature of thermal_mass '{port.body}'")
-    msg = f"{placed.element} is no port of an input"
-    raise TypeError(msg)
+    raise TypeError(f"{placed.element} is no port of an input")
 
 
 def _processes(iphs: IPHS) -> Iterator[Described]:

@@ -172,9 +172,8 @@ class Program:
     def lane_names(self) -> dict[str, str]:
         """Return the bank of every name that has a value per lane."""
         fields = (*self.parameters, *self.states)
-        found = {field.name: field.bank for field in fields if field.bank}
-        found |= {quantity.name: quantity.bank for quantity in self.quantities if quantity.bank}
-        return found
+        lanes = {field.name: field.bank for field in fields if field.bank}
+        return lanes | {item.name: item.bank for item in self.quantities if item.bank}
 
 
 def blank(program: Program) -> Program:

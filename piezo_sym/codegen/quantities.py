@@ -74,18 +74,12 @@ class Quantities:
     @property
     def states(self) -> tuple[Described, ...]:
         """The states, as generated modules describe them."""
-        return tuple(
-            Described(
-                port.state, "J/K" if isinstance(port, Body) else port.units[0], port.doc, p.bank
-            )
-            for p, port in self.stores
-        )
+        return tuple(Described(s.state, s.units[0], s.doc, p.bank) for p, s in self.stores)
 
     @property
     def temperatures(self) -> dict[Expr, Sym]:
         """The name of each temperature by its law."""
-        bodies = self.bodies.values()
-        return {body.law: Sym(body.temperature) for body in bodies}
+        return {body.law: Sym(body.temperature) for body in self.bodies.values()}
 
     @cached_property
     def ports(self) -> tuple[Placed, ...]:
@@ -100,9 +94,9 @@ class Quantities:
     @cached_property
     def lanes(self) -> dict[str, str]:
         """The bank of every name that has a value per lane."""
-        found = {port.state: placed.bank for placed, port in self.stores if placed.bank}
-        found |= {item.name: item.bank for item in self.defined if item.bank}
-        return {**lane_parameters(self.iphs.model), **self.given, **found}
+        lanes = {port.state: placed.bank for placed, port in self.stores if placed.bank}
+        lanes |= {item.name: item.bank for item in self.defined if item.bank}
+        return {**lane_parameters(self.iphs.model), **self.given, **lanes}
 
     @cached_property
     def _names(self) -> Mapping[Expr, Sym]:
@@ -142,12 +136,12 @@ def quantities_of(iphs: IPHS) -> Quantities:
     couplings = iphs.junction.couplings
     defined += sums_in((system.J0, system.B.T, system.G.T, couplings["E"]), costates, new)
     defined += _junction(iphs, laws)
-    found = [*_processes(iphs, laws, costates, inputs, _by_value(defined))]
-    forces, drives = tuple(force for _, force, _ in found), tuple(z for *_, z in found)
+    processes = [*_processes(iphs, laws, costates, inputs, _by_value(defined))]
+    forces, drives = tuple(force for _, force, _ in processes), tuple(z for *_, z in processes)
     heats = tuple(map(mul, outputs, drives))
     slips = [getattr(port, "rate", "") for _, port in circuit.of(DissipativePort, Conductor)]
     for last in (False, True):  # the rates of slips may use the outputs of the others
-        named = zip(found, slips, strict=True)
+        named = zip(processes, slips, strict=True)
         defined += [item for (own, *_), rate in named if bool(rate) is last for item in own]
     defined += sums_in((system.B, system.D, couplings["W"]), outputs, new)
     defined += _totals(iphs, heats, _by_value(defined), new)
@@ -164,8 +158,7 @@ def _by_value(defined: Sequence[Quantity]) -> dict[Expr, Sym]:
 def _input(placed: Placed) -> str:
     if isinstance(placed.port, Source | Exchange | HeatInput):
         return placed.port.input
-    msg = f"{placed.element} is no port of an input"
-    raise TypeError(msg)
+    raise TypeError(f"{placed.element} is no port of an input")
 
 
 # Laws

@@ -74,7 +74,7 @@ class Match:
 
     @property
     def whole(self) -> bool:
-        """Whether this is about a law as a whole, not about a part of it."""
+        """Whether the rule is about a law itself, not about two parts of it."""
         return self.left == self.node
 
     @property
@@ -137,7 +137,7 @@ def powers(node: Expr) -> Powers | None:
 
 
 def _first(parts: Iterable[Expr]) -> Powers | None:
-    return next((found for found in map(powers, parts) if found is not None), None)
+    return next((factors for factors in map(powers, parts) if factors is not None), None)
 
 
 def _product_powers(left: Expr, right: Expr, power: Fraction) -> Powers | None:

@@ -6,9 +6,8 @@ arithmetic is rigorous.  A witness is shown only after its law has been evaluate
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, final
+from typing import Any
 
 from flint import arb, ctx, fmpq, fmpz
 
@@ -47,8 +46,6 @@ OUTCOMES: Mapping[str, Callable[[int], bool]] = {
 }
 
 
-@final
-@dataclass(eq=False)
 class TooCloseError(ArithmeticError):
     """A sign that the precision does not decide, or a number too large to evaluate."""
 
@@ -156,8 +153,7 @@ def _value(node: Expr, values: Mapping[Any, Value]) -> Value:
             return _power(_value(base, values), exponent)
         case Call() if knots(node):
             if not all(_holds(order, values) for order in increasing(node)):
-                msg = "the knots of a table do not increase"
-                raise ValueError(msg)
+                raise ValueError("the knots of a table do not increase")
             return _value(choices(node), values)
         case Call(function, args):
             return _call(function, [_value(arg, values) for arg in args])
@@ -169,8 +165,7 @@ def _value(node: Expr, values: Mapping[Any, Value]) -> Value:
 
 def _quotient(a: Value, b: Value) -> Value:
     if _sign(b) == 0:
-        msg = "division by zero"
-        raise ZeroDivisionError(msg)
+        raise ZeroDivisionError("division by zero")
     return a / b
 
 
@@ -183,8 +178,7 @@ def _power(base: Value, exponent: Fraction) -> Value:
         return power if exponent > 0 else _quotient(fmpq(1), power)
     sign = _sign(base)
     if sign < 0 or (sign == 0 and exponent < 0):
-        msg = "root of a negative number"
-        raise ValueError(msg)
+        raise ValueError("root of a negative number")
     if not sign:
         return fmpq(0)
     if isinstance(base, fmpq):

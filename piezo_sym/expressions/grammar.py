@@ -168,7 +168,7 @@ def _may_vanish(base: Expr) -> bool:
 
 
 def _rational(node: Expr) -> Fraction | None:
-    """Return the exact value of a constant exponent built from + - * / of numbers, else None."""
+    """Return the value of an exponent that is a number, minus one, or a quotient; else None."""
     match node:
         case Num(value):
             return value

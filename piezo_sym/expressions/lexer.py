@@ -73,7 +73,7 @@ def check_tokens(text: str) -> None:
 
 
 def _remedy(odd: str) -> str:
-    """Return what to write instead of two characters, the first of which begins no token."""
+    """Return what to write instead of an unknown operator; `odd` is its first two characters."""
     if odd in DOTTED:
         return f"write {DOTTED[odd]} for {odd}"
     return REMEDIES.get(odd[0], "")

@@ -54,22 +54,12 @@ def check_size(tree: Expr) -> None:
     if _most_branches(tree) > MAX_BRANCHES:
         what = "nests functions with kinks too deeply"
         raise RefusedError(what, f"at most {MAX_BRANCHES} branches", "split the law into elements")
-    _check_nesting(tree)
-    _check_numbers(tree)
-
-
-def _check_nesting(tree: Expr) -> None:
-    """Refuse deeply nested functions: SymPy's time grows without bound."""
-    if _nested(tree) > MAX_NESTED:
+    if _nested(tree) > MAX_NESTED:  # SymPy's time grows without bound
         raise RefusedError("nests functions too deeply", f"at most {MAX_NESTED} in each other")
     constant = (part for part in walk(tree) if not isinstance(part, Cmp) and not names(part))
     if any(_nested(part) > MAX_NESTED_CONSTANT for part in constant):
         what = "nests functions of numbers too deeply"
         raise RefusedError(what, f"at most {MAX_NESTED_CONSTANT}", "give the number itself")
-
-
-def _check_numbers(tree: Expr) -> None:
-    """Refuse numbers whose product overflows a double, or has thousands of digits."""
     if _magnitude(tree) > MAX_MAGNITUDE or _digits(tree) > MAX_DIGITS:
         what = "has numbers that multiply to too large or too long ones"
         expected = f"up to 1e+-{MAX_MAGNITUDE} and {MAX_DIGITS} digits in all"

@@ -29,7 +29,7 @@ from piezo_sym.expressions.tree import (
 CHOICE, SUM, PRODUCT, UNARY, POWER, ATOM = range(6)
 
 MAX_PLAIN = 24  # longer numbers are written with an exponent
-MAX_PLACES = 340
+MAX_DECIMAL_PLACES, MAX_PLACES = 20, 341
 
 Piece = tuple[str, int]  # text, and how strongly its outermost operator binds
 
@@ -121,13 +121,8 @@ def signed(term: Expr) -> tuple[str, Expr]:
 
 def decimal(value: Fraction) -> str | None:
     """Return an exact decimal spelling of a non-negative rational, or None if there is none."""
-    rest, twos, fives = value.denominator, 0, 0
-    while rest % 2 == 0:
-        rest, twos = rest // 2, twos + 1
-    while rest % 5 == 0:
-        rest, fives = rest // 5, fives + 1
-    places = max(twos, fives)
-    if rest != 1 or places > 20:
+    places = _places(value, MAX_DECIMAL_PLACES)
+    if places is None:
         return None
     digits = str(value.numerator * 10**places // value.denominator).rjust(places + 1, "0")
     return f"{digits[:-places]}.{digits[-places:]}" if places else digits
@@ -135,15 +130,17 @@ def decimal(value: Fraction) -> str | None:
 
 def scientific(value: Fraction) -> str | None:
     """Return an exact spelling such as ``1.5e-30`` of a positive rational, or None."""
-    scale = 0
-    while (value * 10**scale).denominator != 1 and scale <= MAX_PLACES:
-        scale += 1
-    scaled = value * 10**scale
-    if scaled.denominator != 1:
+    places = _places(value, MAX_PLACES)
+    if places is None:
         return None
-    digits = str(scaled.numerator)
+    digits = str(value.numerator * 10**places // value.denominator)
     first, rest = digits[0], digits[1:].rstrip("0")
-    return f"{first}{'.' if rest else ''}{rest}e{len(digits) - 1 - scale}"
+    return f"{first}{'.' if rest else ''}{rest}e{len(digits) - 1 - places}"
+
+
+def _places(value: Fraction, most: int) -> int | None:
+    """Return the number of decimal places of a rational, or None if there are more than `most`."""
+    return next((n for n in range(most + 1) if 10**n % value.denominator == 0), None)
 
 
 def _spec_number(value: Fraction) -> Piece:

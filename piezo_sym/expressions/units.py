@@ -116,9 +116,9 @@ def _read(text: str, where: str, value: float | None) -> Unit:
         _read(plain, where, value)  # raises if the unit is wrong in ASCII, too
         raise SpecError(f"{quote(text)} is not ASCII", where, "a unit", f"write {quote(plain)}")
     factor, dimension = Fraction(1), [Fraction(0)] * len(BASES)
-    found = _terms(text, where)
-    alone = len(found) == 1 and found[0][1] == 1
-    terms = [(_named(name, where, value, alone, text), power) for name, power in found]
+    names = _terms(text, where)
+    alone = len(names) == 1 and names[0][1] == 1
+    terms = [(_named(name, where, value, alone, text), power) for name, power in names]
     for unit, power in terms:
         factor *= _raised(unit.factor, power, text, where)
         dimension = [d + p * power for d, p in zip(dimension, unit.dimension, strict=True)]
@@ -181,11 +181,11 @@ def _powers(tree: Expr) -> Terms:
 def _raised(factor: Fraction, power: Fraction, text: str, where: str) -> Fraction:
     """Return a power of a factor, which has to be a rational number."""
     order, size = power.denominator, factor**power.numerator
-    found = Fraction(*(int(fmpz(n).root(order)) for n in (size.numerator, size.denominator)))
-    if found**order != size:
+    root = Fraction(*(int(fmpz(n).root(order)) for n in (size.numerator, size.denominator)))
+    if root**order != size:
         what = f"unit {quote(text)} has a root of {factor}, which is no exact number"
         raise SpecError(what, where, "a root of coherent SI units", "give the value in those")
-    return found
+    return root
 
 
 @cache
@@ -239,7 +239,7 @@ def _meant(name: str, text: str) -> str:
     if two:
         return f"write {quote(text or two)}"
     alike = _registry().parse_unit_name(name, case_sensitive=False)  # mHenry
-    for prefix, root, _ in (found for found in alike if found[1] in UNITS):
+    for prefix, root, _ in (unit for unit in alike if unit[1] in UNITS):
         symbol = str(_registry().get_symbol(prefix + root)).translate(ASCII)
         return f"did you mean {quote(symbol)}?"
     return nearest(name, COMMON)

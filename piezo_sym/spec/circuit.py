@@ -140,7 +140,7 @@ def _between_lane_ends(name: str, element: Element, port: Port) -> Port:
 def _with_names(
     entry: Placed, taken: set[str], heat: Mapping[str, str], laws: Mapping[str, Expr]
 ) -> Port:
-    """Return the port with unused names for its quantities, and with `laws` in place of its own.
+    """Return the port with unused names for its quantities, and with the laws of `laws`.
 
     `heat` is the temperature symbol of each body; new names are added to `taken`.
     """

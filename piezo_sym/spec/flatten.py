@@ -28,7 +28,7 @@ from piezo_sym.spec.tables import bodies, states, temperatures
 #: About as many elements as fit into the text of a spec.
 MOST_ELEMENTS = 5_000
 PLACE = re.compile(r"(?:elements|parameters|inputs|initial)\.\w+|domain\.assume\[\d+\]")
-#: A name in a table, what it stands for, and where the user wrote it.
+#: A name in a table, its value, and the place where the user wrote it.
 Row = tuple[str, Any, str]
 
 
@@ -106,8 +106,24 @@ class Part:
 
     def rows(self, table: str) -> Iterator[Row]:
         """Yield the rows that it adds to a table."""
-        rows = getattr(self, f"_{table}")()
-        return ((new, row, f"components.{self.name}: {table}.{old}") for old, new, row in rows)
+        for name, row in getattr(self.model, table).items():
+            if (new := self._row(table, name, row)) is not None:
+                names = self.renaming.words if table != "elements" else {}
+                new_name = names.get(name, f"{self.name}_{name}")
+                yield new_name, new, f"components.{self.name}: {table}.{name}"
+
+    def _row(self, table: str, name: str, row: Any) -> Any:
+        """Return a row of its model under new names, or None if the flat spec does not have it."""
+        match table:
+            case "elements":
+                return self.renaming.fields(row, name) if name in self.kept else None
+            case "parameters":
+                given = self.component.parameters.get(name, row.value)
+                new = row.model_copy(update={"value": given})
+                return None if isinstance(given, str) else new
+            case "inputs":
+                return None if name in {*self.component.inputs, *self.gone} else row
+        return None if name in self.gone else self.renaming.start(row)
 
     def assumed(self) -> Iterator[tuple[str, str]]:
         """Yield the conditions of its domain that use nothing left out, and their places."""
@@ -118,7 +134,7 @@ class Part:
 
     @cached_property
     def kept(self) -> Mapping[str, Element]:
-        """Its elements, without those that are left out."""
+        """The elements of its model that are not left out."""
         left_out, elements = {*self.component.without}, self.model.elements
         return {name: element for name, element in elements.items() if name not in left_out}
 
@@ -136,7 +152,7 @@ class Part:
 
     @cached_property
     def renaming(self) -> Renaming:
-        """What its names become."""
+        """The new names of its symbols, elements and nodes."""
         front, given = f"{self.name}_", self.component.parameters
         own = {word: front + word for word in (*self.model.inputs, *states(self.model))}
         hot = temperatures(self.model) | {f"T_{body}": body for body in bodies(self.model)}
@@ -147,30 +163,9 @@ class Part:
         return Renaming(words, lambda name: front + name, self.node)
 
     def node(self, node: str) -> str:
-        """Return what one of its nodes is called outside."""
+        """Return the name of one of its nodes in the flat spec."""
         same = node if node in REFERENCES else f"{self.name}.{node}"
         return self.component.nodes.get(node, same)
-
-    def _parameters(self) -> Iterator[tuple[str, str, Any]]:
-        for name, parameter in self.model.parameters.items():
-            given = self.component.parameters.get(name, parameter.value)
-            if not isinstance(given, str):
-                row = parameter.model_copy(update={"value": given})
-                yield name, self.renaming.words[name], row
-
-    def _inputs(self) -> Iterator[tuple[str, str, Any]]:
-        for name, entry in self.model.inputs.items():
-            if name not in self.component.inputs and name not in self.gone:
-                yield name, self.renaming.words[name], entry
-
-    def _initial(self) -> Iterator[tuple[str, str, Any]]:
-        for name, start in self.model.initial.items():
-            if name not in self.gone:
-                yield name, self.renaming.words[name], self.renaming.start(start)
-
-    def _elements(self) -> Iterator[tuple[str, str, Any]]:
-        for name, element in self.kept.items():
-            yield name, f"{self.name}_{name}", self.renaming.fields(element, name)
 
 
 def inputs_of(elements: Iterable[Element]) -> set[str]:

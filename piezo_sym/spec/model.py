@@ -1,4 +1,4 @@
-"""The spec as one frozen value: what a user declares.
+"""The spec as one frozen value.
 
 Input: TOML data, or Python arguments of the same shape.  Output: a `Model`, immutable, hashable,
 and equal to another exactly if both say the same in the same order.  `flatten` writes components
@@ -74,7 +74,7 @@ class Model(Tables):
         return self
 
     def flatten(self) -> Model:
-        """Return the model with its components and banks written out as elements of its own.
+        """Return the model with its components and banks written out as elements.
 
         Raises
         ------

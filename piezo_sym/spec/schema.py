@@ -42,51 +42,51 @@ class _Generator(GenerateJsonSchema):
         return self.generate_inner(schema["schema"])
 
     def default_schema(self, schema: Any) -> Schema:
-        made = super().default_schema(schema)
-        return {key: value for key, value in made.items() if (key, value) != ("default", None)}
+        result = super().default_schema(schema)
+        return {key: value for key, value in result.items() if (key, value) != ("default", None)}
 
     def tuple_schema(self, schema: Any) -> Schema:
         """Return one schema, `items`, for items that are alike: every draft has that."""
-        made = super().tuple_schema(schema)
-        items = made.get("prefixItems", [None])
+        result = super().tuple_schema(schema)
+        items = result.get("prefixItems", [None])
         if None in items or any(item != items[0] for item in items):
-            return made
-        del made["prefixItems"]
-        return made | {"items": items[0]}
+            return result
+        del result["prefixItems"]
+        return result | {"items": items[0]}
 
     def model_schema(self, schema: Any) -> Schema:
         """Return a schema described by the docstring, each paragraph on one line."""
-        made = super().model_schema(schema)
-        del made["title"]
-        about = made.get("description", "").partition("\n\nAttributes\n")[0].split("\n\n")
-        return made | {"description": "\n\n".join(" ".join(part.split()) for part in about)}
+        result = super().model_schema(schema)
+        del result["title"]
+        about = result.get("description", "").partition("\n\nAttributes\n")[0].split("\n\n")
+        return result | {"description": "\n\n".join(" ".join(part.split()) for part in about)}
 
 
 def schema() -> Schema:
     """Return the JSON Schema of a spec."""
-    made = Model.model_json_schema(schema_generator=_Generator)
+    spec = Model.model_json_schema(schema_generator=_Generator)
     for name, description in TABLES.items():
-        made["properties"][name] |= {"description": description, "propertyNames": NAMES}
-    definitions = made.pop("$defs")
+        spec["properties"][name] |= {"description": description, "propertyNames": NAMES}
+    definitions = spec.pop("$defs")
     definitions["Header"]["properties"]["name"] |= NAMES
     for kind, element in KINDS.items():
         definitions[element.__name__] = _element(kind, element, definitions[element.__name__])
-    made["properties"]["elements"]["additionalProperties"] = {"$ref": "#/$defs/Element"}
+    spec["properties"]["elements"]["additionalProperties"] = {"$ref": "#/$defs/Element"}
     definitions["Bank"]["properties"]["elements"] |= {
         "additionalProperties": {"$ref": "#/$defs/Element"},
         "propertyNames": NAMES,
     }
     definitions["Element"] = _union()
-    return {"$schema": DIALECT, "title": "piezo_sym spec", **made, "$defs": definitions}
+    return {"$schema": DIALECT, "title": "piezo_sym spec", **spec, "$defs": definitions}
 
 
-def _element(kind: str, element: type[Element], made: Schema) -> Schema:
+def _element(kind: str, element: type[Element], kind_schema: Schema) -> Schema:
     """Return a kind's schema, in which `kind` and one of its alternative fields are required."""
-    made["properties"]["kind"] = {"const": kind, "description": "The kind of this element."}
-    made["required"] = ["kind", *made.get("required", ())]
+    kind_schema["properties"]["kind"] = {"const": kind, "description": "The kind of this element."}
+    kind_schema["required"] = ["kind", *kind_schema.get("required", ())]
     if group := element.row.form.one_of:
-        made["allOf"] = [{"oneOf": [{"required": [field]} for field in group]}]
-    return made
+        kind_schema["allOf"] = [{"oneOf": [{"required": [field]} for field in group]}]
+    return kind_schema
 
 
 def _union() -> Schema:

@@ -1,4 +1,4 @@
-"""What several stages read from the tables of a spec.
+"""Properties of a spec that several stages read from its tables.
 
 Input: the tables of a spec.  Output: its states, banks, bodies, laws and conditions, in declaration
 order.
@@ -60,8 +60,8 @@ def bodies(spec: Tables) -> tuple[str, ...]:
 
 def bank_of(spec: Tables) -> dict[str, str]:
     """Return the bank of each element that has one."""
-    found = ((name, e.bank_of(name)) for name, e in spec.elements.items())
-    return {name: bank for name, bank in found if bank is not None}
+    names = ((name, e.bank_of(name)) for name, e in spec.elements.items())
+    return {name: bank for name, bank in names if bank is not None}
 
 
 def bank_states(spec: Tables) -> dict[str, str]:
@@ -184,7 +184,7 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     for where, tree in initial_laws(spec):
         for word in names(tree):
             users.setdefault(word, set()).add(lanes.get(where.removeprefix("initial.")))
-    single = {word: next(iter(found)) for word, found in users.items() if len(found) == 1}
+    single = {word: next(iter(owner)) for word, owner in users.items() if len(owner) == 1}
     candidates = {word: bank for word in spec.parameters if (bank := single.get(word))}
     lanes |= candidates
     groups = [names(condition.tree) for condition in conditions(spec)]

@@ -69,9 +69,9 @@ def unit_text(dimension: Dimension) -> str:
 
 @cache
 def quantity(dimension: Dimension, said: str = "") -> str:
-    """Return what a quantity is called, with its unit, such as ``a voltage [V]``.
+    """Return the name of a quantity with its unit, such as ``a voltage [V]``.
 
-    `said` is the unit as a kind of element gives it, if one does: ``a torque [N*m]``.
+    `said` is the unit in the record of an element's kind, if it has one: ``a torque [N*m]``.
     """
     for text in (said,) if said in QUANTITIES else QUANTITIES:
         if parse_unit(text).dimension == dimension:

@@ -67,7 +67,7 @@ class Template:
         values = {place(name): text for name, text in _number_texts(data, self.factors)}
         values |= {place(HASH): spec_hash(data), place(VERDICT): self.verdict}
         return {
-            ending: PLACE.sub(lambda found: values[found[0]], text)
+            ending: PLACE.sub(lambda match: values[match[0]], text)
             for ending, text in self.files.items()
         }
 
@@ -118,8 +118,7 @@ def _number_texts(data: Mapping[str, Any], factors: Mapping[str, str]) -> Iterat
             for word, value in _lane_values(name, entry.get(key, default)):
                 si = scaled(float(value), factor)
                 if si and not 1 / MAX_SIZE <= abs(si) <= MAX_SIZE:
-                    msg = f"{name} is beyond all numbers"
-                    raise OverflowError(msg)
+                    raise OverflowError(f"{name} is beyond all numbers")
                 yield word, repr(si)
 
 

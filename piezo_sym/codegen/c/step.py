@@ -140,7 +140,7 @@ class _Printer:
         return self.frame.function(name, ("x", "p", "out"), doc, body, local=local)
 
     def stage(self) -> str:
-        """Return the function of a stage: rates, what the ledger books, switching functions."""
+        """Return the function of a stage: rates, rows of the ledger, switching functions."""
         stage = self.step.stage
         switches = [OutputRow(Slot(s.branch, s.bank), s.value) for s in stage.switches]
         rows = {"s": switches, "out": stage.rates, "rows": stage.booked}

@@ -74,8 +74,7 @@ def _pick(then: Piece, test: str, other: Piece) -> Piece:
 
 
 def _lane_sum(arg: Piece, bank: str) -> Piece:
-    msg = f"the sum of {arg[0]} over {bank} is a loop, not an expression"
-    raise TypeError(msg)
+    raise TypeError(f"the sum of {arg[0]} over {bank} is a loop, not an expression")
 
 
 def c_style(names: Mapping[str, str], arrays: Mapping[str, str], index: str) -> Style:

@@ -239,9 +239,9 @@ def _assignment(target: str, text: str, value: Expr) -> list[str]:
 
 
 def _names_with_lane_axis(program: Program) -> dict[str, str]:
-    """Return the bank of every name that depends on a state of it, so that it has an axis of lanes.
+    """Return the bank of every name whose value has an axis of lanes, since a state is in it.
 
-    What depends on parameters alone may be one number for all lanes.
+    A value of parameters alone may be one number for all lanes.
     """
     lanes = {field.name: field.bank for field in program.states if field.bank}
     for quantity in program.quantities:

@@ -1,1 +1,1 @@
-"""What must hold between the tables of a spec: names, references, laws, lanes, values."""
+"""Checks of a spec's tables against each other: names, references, laws, lanes, values."""

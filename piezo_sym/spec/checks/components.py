@@ -56,10 +56,10 @@ def _check_fits(
             f"a number, or {with_article(what)}" if what == "parameter" else with_article(what)
         )
         raise SpecError(f"{quote(given)} is no {what} of this spec", where, expected, remedy)
-    found = known[given].dimension.dimension
+    unit = known[given].dimension.dimension
     needed = meant.dimension.dimension
-    if found != needed:
-        raise SpecError(f"{quote(given)} is {quantity(found)}", where, quantity(needed))
+    if unit != needed:
+        raise SpecError(f"{quote(given)} is {quantity(unit)}", where, quantity(needed))
 
 
 def _check_left_out(where: str, component: Component, model: Tables) -> None:

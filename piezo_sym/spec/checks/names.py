@@ -6,6 +6,7 @@ from fractions import Fraction
 from keyword import iskeyword
 
 from piezo_sym.errors import SpecError, quote
+from piezo_sym.expressions.grammar import LARGEST, SMALLEST
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import check_name, check_symbol
@@ -13,8 +14,6 @@ from piezo_sym.spec.tables import bank_of, bank_states, banks, bodies
 
 #: Variables of every result; see `run`.
 RESULTS = frozenset({"time", "energy", "entropy", "energy_residual", "entropy_residual"})
-LARGEST = Fraction(10) ** 300
-SMALLEST = 1 / LARGEST
 #: What generated modules import.
 IMPORTS = frozenset({"numpy", "typing", "dataclasses", "math"})
 PREFIXES = ("y_", "supplied_", "heat_", "produced_", "entropy_exchanged_")

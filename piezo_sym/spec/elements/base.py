@@ -247,6 +247,6 @@ def positive(law: Expr) -> Cmp:
 
 
 def state_symbol(element: Element, name: str) -> str:
-    """Return the symbol of an element's state: as given, else its kind's letter and its name."""
+    """Return the symbol of an element's state: as given, or from its letter and the name."""
     given = getattr(element, "state", None)
     return f"{element.letter}_{name}" if given is None else str(given)

@@ -1,4 +1,4 @@
-"""The physical domains: a row each, with its two variables and the states of its stores.
+"""The physical domains: one row each, with its two variables and the states of its stores.
 
 Input: nothing; this is data.  Output: `DOMAINS`.  Across/through: a branch (a, b) has across e_a -
 e_b, and its through variable flows from a to b inside the element.  Messages, units and names of

@@ -1,4 +1,4 @@
-"""The table of kinds: a row each, made of forms in domains.
+"""The table of kinds: one row per kind, made of forms in domains.
 
 A new kind is a row here, a row in ``tests/networks/kinds.py`` and a line in the checker's table.
 """

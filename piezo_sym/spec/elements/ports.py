@@ -127,6 +127,7 @@ class Body:
 
     domain: ClassVar[PhysicalDomain] = THERMAL
     imposes: ClassVar[PowerVariable] = PowerVariable.ACROSS
+    units: ClassVar[tuple[str, str]] = ("J/K", "K")
 
     state: str
     law: Expr

@@ -17,7 +17,7 @@ from piezo_sym.spec.elements.ports import Body, Branch, Port, Storage
 from piezo_sym.spec.table import Table
 
 ENTROPY = "entropy"
-#: For each rate, the domain, and which variable the co-state of such a state is.
+#: For each rate, the domain of the state, and which variable its co-state is.
 RATES: dict[str, tuple[PhysicalDomain, PowerVariable]] = {
     domain.variable(which).name: (domain, which.other)
     for domain in DOMAINS

@@ -266,7 +266,7 @@ def _joined_law(law: Expr, energy: Expr | None, state: str, count: int) -> tuple
 
 
 def _fault(size: Size, element: Any) -> Fault | None:
-    """Return the first fault of fields that only make sense together, such as slip and heats."""
+    """Return the first fault of fields that depend on each other, such as slip and heats."""
     slip = getattr(element, "slip", None)
     if size.slips and (slip is None) != (element.heats is None):
         given, other = ("heats", "slip") if slip is None else ("slip", "heats")
