@@ -139,10 +139,10 @@ def _joined(iphs: IPHS) -> Iterator[str]:
 
     for joint in iphs.junction.joints:
         for n, kept in enumerate(joint.kept):
-            own = (
+            terms = (
                 mul(m.shares[n], Sym(f"({m.store.state} of {m.element})")) for m in joint.members
             )
-            yield f"\nJoined: {kept.store.state} = {spell(add(*own))}"
+            yield f"\nJoined: {kept.store.state} = {spell(add(*terms))}"
         for m in joint.members:
             law = f"{m.store.costate} = {spell(joint.costate(m))}, " if m in joint.followers else ""
             yield f"  {m.element}: {law}energy {spell(m.energy)}"

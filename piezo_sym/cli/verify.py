@@ -101,8 +101,8 @@ def _rows(report: Report, second: Recheck | None) -> list[dict[str, object]]:
     """Return the rows as plain data, with the second program's verdict if it has run."""
     rows = []
     for row in report.rows:
-        said = {"recheck": second.rows.get((row.id, row.element))} if second else {}
-        rows.append({**row.as_dict(report.model), **said})
+        rechecked = {"recheck": second.rows.get((row.id, row.element))} if second else {}
+        rows.append({**row.as_dict(report.model), **rechecked})
     return rows
 
 

@@ -160,12 +160,12 @@ class Units:
         match = IN_UNIT.fullmatch(text)
         if match is None:
             raise UsageError(f"{quote(text)} has no unit", where, "a unit for each number, or none")
-        value, (name, said) = number(match[1], where), (where.rpartition(" ")[2], match[2])
-        declared = self._declared.get(name, "1" if name.endswith("_count") else said)
-        unit = parse_unit(said.strip(), where, value)
+        value, (name, unit_part) = number(match[1], where), (where.rpartition(" ")[2], match[2])
+        declared = self._declared.get(name, "1" if name.endswith("_count") else unit_part)
+        unit = parse_unit(unit_part.strip(), where, value)
         if parse_unit(declared.strip()).dimension != unit.dimension:
             expected = "a plain number" if declared == "1" else f"one such as {declared}"
-            raise UsageError(f"{quote(said)} is no unit of {quote(name)}", where, expected)
+            raise UsageError(f"{quote(unit_part)} is no unit of {quote(name)}", where, expected)
         return to_si(value, unit)
 
     def _assume(self, where: str) -> None:

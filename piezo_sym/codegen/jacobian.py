@@ -146,7 +146,7 @@ class _Chain:
         """Return the derivative of an expression that has a value per lane of `bank`, or one."""
         if isinstance(value, LaneSum):
             return self._of_sum(self.of(value.arg, value.bank), value.bank)
-        own: list[Expr] = []
+        terms: list[Expr] = []
         outer: list[Outer] = []
         for name in names(value):
             slope = self.slopes.get(name)
@@ -156,9 +156,9 @@ class _Chain:
             if bank and self.state.bank and not self.derivatives.lanes.get(name):
                 outer.append(Outer(factor, slope.value))
             else:
-                own.append(mul(factor, slope.value))
+                terms.append(mul(factor, slope.value))
                 outer += [Outer(mul(factor, o.left), o.right) for o in slope.outer]
-        return _Slope(add(*own), tuple(o for o in outer if ZERO not in (o.left, o.right)))
+        return _Slope(add(*terms), tuple(o for o in outer if ZERO not in (o.left, o.right)))
 
     def _of_sum(self, slope: _Slope, bank: str) -> _Slope:
         """Return the derivative of a sum over the lanes of `bank`, given that of its terms."""

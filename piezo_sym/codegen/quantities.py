@@ -142,7 +142,7 @@ def quantities_of(iphs: IPHS) -> Quantities:
     slips = [getattr(port, "rate", "") for _, port in circuit.of(DissipativePort, Conductor)]
     for last in (False, True):  # the rates of slips may use the outputs of the others
         named = zip(processes, slips, strict=True)
-        defined += [item for (own, *_), rate in named if bool(rate) is last for item in own]
+        defined += [item for (items, *_), rate in named if bool(rate) is last for item in items]
     defined += sums_in((system.B, system.D, couplings["W"]), outputs, new)
     defined += _totals(iphs, heats, _by_value(defined), new)
     return Quantities(

@@ -141,7 +141,7 @@ def _antiderivatives(
 class _Edge:
     """The edge of a comparison that is affine in `name`: the zero of the `difference` of its sides.
 
-    `slope` is that of the difference; `sides` are the law where the comparison holds, and beyond.
+    `slope` is that of the difference; `sides` are the law where it holds, then where it does not.
     """
 
     condition: Cmp

@@ -68,8 +68,8 @@ def check_size(tree: Expr) -> None:
 
 def _nested(node: Expr | Cmp) -> int:
     """Return how deeply functions and roots are nested."""
-    own = isinstance(node, Call) or (isinstance(node, Pow) and node.exponent.denominator > 1)
-    return int(own) + max((_nested(part) for part in children(node)), default=0)
+    nests = isinstance(node, Call) or (isinstance(node, Pow) and node.exponent.denominator > 1)
+    return int(nests) + max((_nested(part) for part in children(node)), default=0)
 
 
 def _magnitude(node: Expr | Cmp) -> float:
@@ -147,7 +147,7 @@ def _degree(node: Expr | Cmp) -> Fraction:
 class _Extent:
     """The number of terms of an expanded law, the most of any part, and its divisors' terms."""
 
-    own: int
+    terms: int
     most: int
     divisors: Mapping[Expr, int]
 
@@ -156,27 +156,27 @@ def _extent(node: Expr | Cmp) -> _Extent:
     """Return the extent of a law; a sum of quotients counts over its common denominator."""
     parts = [_extent(part) for part in children(node)]
     divisors = {key: n for part in parts for key, n in part.divisors.items()}
-    inner = [part.own for part in parts]
-    own = 1
+    inner = [part.terms for part in parts]
+    terms = 1
     match node:
         case Add():
-            own = sum(inner) * math.prod(divisors.values())
+            terms = sum(inner) * math.prod(divisors.values())
         case Mul() | Div():
-            own = math.prod(inner)
+            terms = math.prod(inner)
         case Pow(_, exponent):
             times = max(math.ceil(abs(exponent)), 1)
-            own = math.comb(inner[0] + times - 1, times)
+            terms = math.comb(inner[0] + times - 1, times)
         case Call("log", (arg,)):
-            own = _factors(arg)
+            terms = _factors(arg)
         case Neg() | If():
-            own = max(inner)
-    own = min(own, MAX_TERMS + 1)
-    most = max([own, *(part.most for part in parts)])
+            terms = max(inner)
+    terms = min(terms, MAX_TERMS + 1)
+    most = max([terms, *(part.most for part in parts)])
     if isinstance(node, Div):
         divisors = dict(parts[0].divisors) | {node.right: inner[1]}
     elif isinstance(node, Call | Cmp | If | Add):
         divisors = {}
-    return _Extent(own, most, divisors)
+    return _Extent(terms, most, divisors)
 
 
 def _factors(node: Expr | Cmp) -> int:

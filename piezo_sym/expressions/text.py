@@ -58,8 +58,8 @@ class Style:
 
 def enclose(piece: Piece, strength: int) -> str:
     """Return the piece's text, in parentheses if it binds more weakly than `strength`."""
-    text, own = piece
-    return text if own >= strength else f"({text})"
+    text, binding = piece
+    return text if binding >= strength else f"({text})"
 
 
 def write(node: Expr, style: Style) -> str:

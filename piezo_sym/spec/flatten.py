@@ -154,12 +154,12 @@ class Part:
     def renaming(self) -> Renaming:
         """The new names of its symbols, elements and nodes."""
         front, given = f"{self.name}_", self.component.parameters
-        own = {word: front + word for word in (*self.model.inputs, *states(self.model))}
+        symbols = {word: front + word for word in (*self.model.inputs, *states(self.model))}
         hot = temperatures(self.model) | {f"T_{body}": body for body in bodies(self.model)}
         values = {word: given.get(word) for word in self.model.parameters}
         replaced = {w: v if isinstance(v, str) else front + w for w, v in values.items()}
         temperature = {word: f"T_{front}{body}" for word, body in hot.items()}
-        words = {**temperature, **own, **self.component.inputs, **replaced}
+        words = {**temperature, **symbols, **self.component.inputs, **replaced}
         return Renaming(words, lambda name: front + name, self.node)
 
     def node(self, node: str) -> str:
@@ -218,8 +218,8 @@ def _cell_node(bank: str, outside: set[str], place: str, node: str) -> str:
     """Return the new name of a cell's node; a node that also stands outside of cells keeps its."""
     if node in REFERENCES or node in outside:
         return node
-    own = f"{bank}.{node}"
-    if own in outside:
-        what = f"{quote(own)} is what node {quote(node)} of a cell of {quote(bank)} is called"
+    name = f"{bank}.{node}"
+    if name in outside:
+        what = f"{quote(name)} is what node {quote(node)} of a cell of {quote(bank)} is called"
         raise SpecError(what, place, "one meaning of a node", f"rename {quote(node)} here")
-    return own
+    return name

@@ -75,9 +75,9 @@ def component_file(given: object, where: str, folder: Path | None) -> Path:
             f"shipped: {listing(shipped())}; or in Python a Model, such as load({quote(given)})"
         )
         raise SpecError(f"{quote(given)} is no shipped spec", where, remedy=remedy)
-    own, path = Path(given), folder / given
+    relative, path = Path(given), folder / given
     inside = real(path).is_relative_to(real(folder))
-    if not inside or ".." in own.parts or own.is_absolute():
+    if not inside or ".." in relative.parts or relative.is_absolute():
         remedy = "move or copy the file there"
         raise SpecError(f"{quote(given)} leads out of the spec's folder", where, expected, remedy)
     if not os.path.isfile(path):

@@ -68,12 +68,12 @@ def unit_text(dimension: Dimension) -> str:
 
 
 @cache
-def quantity(dimension: Dimension, said: str = "") -> str:
+def quantity(dimension: Dimension, spelling: str = "") -> str:
     """Return the name of a quantity with its unit, such as ``a voltage [V]``.
 
-    `said` is the unit in the record of an element's kind, if it has one: ``a torque [N*m]``.
+    `spelling` is the unit in the record of an element's kind, if it has one: ``a torque [N*m]``.
     """
-    for text in (said,) if said in QUANTITIES else QUANTITIES:
+    for text in (spelling,) if spelling in QUANTITIES else QUANTITIES:
         if parse_unit(text).dimension == dimension:
             return QUANTITIES[text] + f" [{text}]" * (text != "1")
     return f"a quantity in {unit_text(dimension)}"

@@ -35,14 +35,14 @@ def unroll(model: Model, counts: Mapping[str, int]) -> Model:
     lanes = {symbol: sizes[bank] for symbol, bank in of_lanes.items()}
 
     def parameter(name: str, lane: int) -> Any:
-        own = model.parameters[name]
-        return own.model_copy(update={"value": _of_lane(own.value, lane, lanes[name])})
+        row = model.parameters[name]
+        return row.model_copy(update={"value": _of_lane(row.value, lane, lanes[name])})
 
     def element(name: str, lane: int) -> dict[str, Any]:
-        own, bank = model.elements[name], owners[name]
+        original, bank = model.elements[name], owners[name]
         nodes = {node: f"{node}.{lane}" for node in inner}
-        nodes |= _chain_nodes(own.chain, bank, lane, sizes[bank])
-        fields = _lane_names(lanes, lane, lambda node: nodes.get(node, node)).fields(own, name)
+        nodes |= _chain_nodes(original.chain, bank, lane, sizes[bank])
+        fields = _lane_names(lanes, lane, lambda node: nodes.get(node, node)).fields(original, name)
         return fields | {"count": None, "bank": None, "series": None}
 
     def start(symbol: str, lane: int) -> Any:

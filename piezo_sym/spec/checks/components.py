@@ -26,12 +26,12 @@ def check_component(spec: Tables, where: str, component: Component, model: Table
             raise SpecError(what, f"{where}.nodes.{node}", remedy="leave it out")
         _check_known(f"{where}.nodes.{node}", "node", node, used - REFERENCES.keys(), model)
     for what in ("parameter", "input"):
-        own, theirs, table = (getattr(t, f"{what}s") for t in (spec, model, component))
+        ours, theirs, table = (getattr(t, f"{what}s") for t in (spec, model, component))
         for name, given in table.items():
             place = f"{where}.{what}s.{name}"
             _check_known(place, what, name, theirs, model)
             if isinstance(given, str):
-                _check_fits(place, what, given, own, theirs[name])
+                _check_fits(place, what, given, ours, theirs[name])
     for name in component.without:
         _check_known(f"{where}.without", "element", name, model.elements, model)
     _check_left_out(where, component, model)

@@ -51,8 +51,8 @@ def _storage(spec: Tables, name: str, body: str, word: str) -> str:
     """
     (store,) = (p for p in spec.elements[name].ports(name) if isinstance(p, Storage))
     heat = next(p for p in spec.elements[body].ports(body) if isinstance(p, Body))
-    own = replace(store.law, {word: heat.law})
-    stored, warm = antiderivative(own, store.state), antiderivative(heat.law, heat.state)
+    law = replace(store.law, {word: heat.law})
+    stored, warm = antiderivative(law, store.state), antiderivative(heat.law, heat.state)
     texts = (spell(part) if part else "<its energy>" for part in (stored, warm))
     rate = store.domain.variable(store.imposes.other).name
     nodes = ", ".join(f'"{node}"' for node in store.branch)

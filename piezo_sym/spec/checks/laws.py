@@ -87,7 +87,7 @@ def check_laws(spec: Tables) -> None:
         cells.setdefault(bank, {})[symbol] = None
     for name, element in spec.elements.items():
         own = {state_symbol(element, name): None} if element.letter else {}
-        own = own | cells.get(owners.get(name, ""), {})
+        own |= cells.get(owners.get(name, ""), {})  # the states of this lane
         for law in element.laws(name):
             words: Collection[str] = ChainMap(own, every) if law.mark.sees else spec.parameters
             _check_words(spec, law.tree, law.where, law.letters, words, name)
@@ -132,8 +132,8 @@ def _check_temperature(spec: Tables, condition: Condition) -> None:
     """
     own = (table["T"] for table in (spec.parameters, spec.inputs) if "T" in table)
     alike = any(parse_unit(entry.unit).dimension == parse_unit("K").dimension for entry in own)
-    said = condition.where.startswith("domain.") and "T" in names(condition.tree)
-    if said and len(bodies(spec)) == 1 and alike:
+    used = condition.where.startswith("domain.") and "T" in names(condition.tree)
+    if used and len(bodies(spec)) == 1 and alike:
         (word,) = temperatures(spec)
         what = "'T' is the temperature of the only body, and a name of this spec"
         remedy = f"write {quote(word)} if the body is meant; if not, rename what is called 'T'"

@@ -37,7 +37,8 @@ def dissipation(domain: PhysicalDomain, symbol: str, *gives: PowerVariable) -> F
         letters, sample = {given.letter: given.unit, "T": "K"}, "" if laws else symbol
         laws[out.name] = law_field(out.unit, letters, sample, default, sees=True)
     words = ", or ".join(
-        f"its {out.word} [{out.unit}] is a law of {given.letter}, the {said(given)} [{given.unit}]"
+        f"its {out.word} [{out.unit}] is a law of {given.letter}, "
+        f"the {with_sense(given)} [{given.unit}]"
         for out, given in pairs.values()
     )
     out, given = pairs[gives[0]]
@@ -79,9 +80,9 @@ def imposed(domain: PhysicalDomain, imposes: PowerVariable, symbol: str) -> Form
     verb = relative if across else f"is given into {node}"
 
     def ports(element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
-        own = placed(element, branch, domain)
+        pair = placed(element, branch, domain)
         doc = f"{output.word} {'given by' if across else 'at'} {element.kind} '{name}'"
-        return (Source(element.input, own, domain, imposes, (given.unit, output.unit), doc),)
+        return (Source(element.input, pair, domain, imposes, (given.unit, output.unit), doc),)
 
     return Form(
         fields={**places(domain, at), "input": (InputName, ..., symbol)},
@@ -128,9 +129,9 @@ def coupling(
     def ports(element: Any, name: str, _: Branch) -> tuple[Port, ...]:
         given = ((getattr(element, field), domain) for field, domain, _ in pairs)
         other, domain = next(pair for pair in given if pair[0] is not None)
-        own, law = getattr(element, one), element.law(ratio)
+        pair, law = getattr(element, one), element.law(ratio)
         named = f"{'alpha' if gyrates else 'n'}_{name}"
-        return (Coupling(own, first, other, domain, law, ratio, named, gyrates),)
+        return (Coupling(pair, first, other, domain, law, ratio, named, gyrates),)
 
     equations = [_equations(ratio, (one, first), pair, gyrates) for pair in pairs[: len(second)]]
     equations += [f"`{alias}` is another name of `{pairs[0][0]}`: give one."] if alias else []
@@ -140,7 +141,7 @@ def coupling(
         ports=ports,
         role=("gyrator" if gyrates else "transformer",),
         one_of=choices,
-        ratios=tuple((first, domain, own) for domain, own in second),
+        ratios=tuple((first, domain, ratio_unit) for domain, ratio_unit in second),
     )
 
 
@@ -173,7 +174,7 @@ def _equations(
     )
 
 
-def said(variable: PhysicalVariable, at: bool = False) -> str:
+def with_sense(variable: PhysicalVariable, at: bool = False) -> str:
     """Return a variable with its sign convention, in words; `at` one node or along a branch."""
     return f"{variable.word} {'at its node' if at else variable.sense}"
 

@@ -16,7 +16,7 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Num, Sym, rename
 from piezo_sym.spec.elements.base import Fault, Form, positive, state_symbol
 from piezo_sym.spec.elements.domains import PhysicalDomain, PhysicalVariable, PowerVariable
-from piezo_sym.spec.elements.forms import placed, places, said
+from piezo_sym.spec.elements.forms import placed, places, with_sense
 from piezo_sym.spec.elements.marks import BodyName, Fields, Jumps, OptionalBody, Pair, law_field
 from piezo_sym.spec.elements.ports import Branch, DissipativePort, Port, Storage
 
@@ -168,7 +168,7 @@ def _store_doc(size: Size) -> str:
     )
     return (
         f"State {letter} [{out.state_unit}], the {out.state}, is the integral of the "
-        f"{said(driven, size.at)}; co-state the {said(out, size.at)}, {out.prefix} = "
+        f"{with_sense(driven, size.at)}; co-state the {with_sense(out, size.at)}, {out.prefix} = "
         f"{f'{size.field}*({letter} - rest)' if size.stiff else f'{letter}/{size.field}'} "
         f"[{out.unit}]; energy the integral of {out.prefix} over {letter}. Instead of "
         f"`{size.field}`, `{out.name}` gives {out.prefix} or `energy` the energy [J], as a law of "
