@@ -1,7 +1,7 @@
-"""Specs run: `simulate`, `Stepper` and steady states, of a spec's generated module.
+"""`simulate`, `Stepper` and the searches for steady states, for specs instead of modules.
 
-Input: the name of a shipped spec, a path or a `Model`, and the options of what is called.  Output:
-what that returns for the module.
+Input: the name of a shipped spec, a path or a `Model`, and the other arguments of a function of
+generated modules.  Output: its result for the spec's module.
 """
 
 from __future__ import annotations
@@ -33,20 +33,20 @@ def of_spec(
     run: Callable[Concatenate[Any, P], R],
     stages: Callable[[Mapping[str, Any]], int | None] = lambda _: None,
 ) -> Callable[Concatenate[Spec, P], R]:
-    """Return a function of a generated module as one of a spec: a name, a path or a `Model`.
+    """Return a function of a generated module as a function of a spec.
 
-    `stages` returns those of the steps that it takes, from its options.
+    `stages` returns the stages of its steps from its options, so that they are compiled ahead.
     """
 
     def call(model: Spec, *args: P.args, **given: P.kwargs) -> R:
         known_keys(given, options, run.__name__)
         return run(module_of(model, stages(given)), *args, **given)
 
-    made: Any = update_wrapper(call, run, updated=())
+    wrapper: Any = update_wrapper(call, run, updated=())
     first, *others = signature(run).parameters.values()
     options = tuple(other.name for other in others)
     first = first.replace(name="model", annotation=Spec)
-    made.__signature__ = signature(run).replace(parameters=[first, *others])
+    wrapper.__signature__ = signature(run).replace(parameters=[first, *others])
     return call  # type: ignore[return-value]  # the model may be given by name, too
 
 
@@ -57,7 +57,7 @@ steady_branches = of_spec(branches.steady_branches)
 
 
 def _with_bar(run: Callable[P, R]) -> Callable[P, R]:
-    """Return `simulate` with a bar where `progress` is True, and none where it is False."""
+    """Return `simulate` with a bar if `progress` is True, and none if it is False."""
 
     def call(*args: P.args, **given: P.kwargs) -> R:
         options: dict[str, Any] = given

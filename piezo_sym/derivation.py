@@ -8,10 +8,8 @@
     system       Junction -> IPHS              Definition 1, and what follows         iphs
 
 Laws are trees of `expressions`, from the spec to the printers.  Banks stay symbolic in their size r
-all the way (`algebra.lanes`); `IPHS.expand` writes them out.
+throughout (`algebra.lanes`); `IPHS.expand` writes them out.
 """
-
-from __future__ import annotations
 
 from piezo_sym.algebra.symbols import symbol_table
 from piezo_sym.errors import UsageError, quote

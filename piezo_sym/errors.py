@@ -1,8 +1,8 @@
-"""Every error a user can meet: one clear line that says what, where, what was expected, what to do.
+"""The errors of the package: one line with the fault, the place, what was expected, the remedy.
 
-Input: the four parts.  Output: an exception whose ``str`` is one printable line, and whose
-``exit_code`` is the command line's answer (1: not proved or drifted, 2: spec or command wrong,
-3: a proof and a number disagree).
+Input: these four parts.  Output: an exception whose ``str`` is one printable line, and whose
+``exit_code`` is that of the command line (1: not proved or drifted, 2: spec or command wrong, 3: a
+proof and a number disagree).
 """
 
 from collections.abc import Iterable
@@ -24,8 +24,8 @@ class PiezoError(Exception):
     ----------
     what : the fault, in a few words.
     where : the place: a dotted path in the spec, a file, an option.
-    expected : what would have been right.
-    remedy : what to do now.
+    expected : a valid value.
+    remedy : what to do.
     """
 
     what: str
@@ -72,13 +72,13 @@ class FileError(PiezoError):
 class RunError(PiezoError):
     """A simulation that left its domain or could not go on; says when and why.
 
-    `partial` is the Dataset so far, where `simulate` had begun to step; `time` is when inputs leave
-    the domain [s].
+    `partial` is the Dataset so far, if `simulate` has begun to step; `time` [s] is when inputs
+    leave the domain.
     """
 
     partial: Any = None
     time: float = nan
-    reached: Any = None  # times and `Trajectory` that `partial` is made of
+    reached: Any = None  # the times and the `Trajectory` of `partial`
 
 
 @final
@@ -95,14 +95,14 @@ class ProofError(PiezoError):
 
 @final
 class ContradictionError(PiezoError):
-    """A proved row, and a point at which exact arithmetic finds it false: a fault of ours."""
+    """A proved row that exact arithmetic finds false at a point: a fault of this package."""
 
     exit_code: ClassVar[int] = 3
 
 
 @final
 class DriftError(PiezoError):
-    """Generated files that are not what their specs give."""
+    """Generated files that differ from what their specs generate."""
 
     exit_code: ClassVar[int] = 1
 
@@ -113,7 +113,7 @@ def one_line(text: str) -> str:
 
 
 def quote(value: object) -> str:
-    """Return a short, printable, quoted form of something a user wrote."""
+    """Return a short, printable, quoted form of a user's value."""
     text = value if isinstance(value, str) else repr(value)
     short = text if len(text) <= MAX_QUOTE else f"{text[: MAX_QUOTE - 3]}..."
     return one_line(f"'{short}'")
@@ -131,12 +131,12 @@ def with_article(noun: str) -> str:
     return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
-#: Names so short are alike only if they begin alike: F_0 is not meant to be T_0.
+#: Names up to this length are similar only if they begin alike: F_0 is not meant to be T_0.
 SHORT = 3
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Return "did you mean 'x'?" for the known name nearest to `word`, or the known names."""
+    """Return "did you mean 'x'?" with the known name nearest to `word`, or the known names."""
     names, short = list(known), word[:MAX_QUOTE]
     match = [name for name in names if name.lower() == short.lower()]
     like = [name for name in names if len(short) > SHORT or name[:1] == short[:1]]

@@ -1,6 +1,6 @@
-"""Files in and out: replaced atomically, never half-written.
+"""Reads and atomic writes of files, which are never half-written.
 
-Input: a path and its text.  Output: the file, or one `FileError`.
+Input: a path and its content.  Output: the file, or a `FileError`.
 """
 
 import atexit
@@ -17,12 +17,12 @@ from piezo_sym.errors import FileError, UsageError, nearest, one_line, quote
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file as UTF-8 in one step: readers see the old one or the new one."""
+    """Write a text file as UTF-8 atomically: readers see the old file or the new one."""
     write_together({path: text.encode("utf-8")})
 
 
 def write_bytes(path: Path, data: bytes) -> None:
-    """Write a file in one step: readers see the old one or the new one."""
+    """Write a file atomically: readers see the old file or the new one."""
     write_together({path: data})
 
 
@@ -31,7 +31,7 @@ def write_together(contents: Mapping[Path, bytes]) -> None:
     staged: dict[Path, Path] = {}
     try:
         for path, data in contents.items():
-            staged[path] = _staged(path, data)
+            staged[path] = _write_beside(path, data)
         for path, temporary in staged.items():
             try:
                 temporary.replace(path)
@@ -43,8 +43,8 @@ def write_together(contents: Mapping[Path, bytes]) -> None:
                 temporary.unlink()
 
 
-def _staged(path: Path, data: bytes) -> Path:
-    """Write data beside `path`, and return where."""
+def _write_beside(path: Path, data: bytes) -> Path:
+    """Write data to a temporary file beside `path`, and return its path."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
@@ -82,16 +82,16 @@ def read_bytes(path: Path) -> bytes | None:
 
 
 def near_file(path: Path) -> str:
-    """Return the remedy for a file that is not there: one beside it that is called nearly so."""
+    """Return the remedy for a missing file: a file beside it with a similar name, if any."""
     names: list[str] = []
     with suppress(OSError, ValueError):
         names = [entry.name for entry in path.parent.iterdir() if entry.suffix == path.suffix]
-    meant = nearest(path.name, names)
-    return meant if meant.startswith("did you mean") else "check the path"
+    remedy = nearest(path.name, names)
+    return remedy if remedy.startswith("did you mean") else "check the path"
 
 
 def folder_entries(path: Path) -> list[Path]:
-    """Return what a folder contains, in order."""
+    """Return the entries of a folder, sorted."""
     try:
         return sorted(path.iterdir())
     except OSError as error:
@@ -100,7 +100,7 @@ def folder_entries(path: Path) -> list[Path]:
 
 @cache
 def temporary_folder() -> Path:
-    """Return a folder that lives as long as the process, in place of a cache."""
+    """Return a folder that is removed when the process ends, in place of a cache."""
     try:
         folder, owner = tempfile.mkdtemp(prefix="piezo_sym-"), os.getpid()
     except OSError as error:
@@ -125,14 +125,14 @@ def zarr_library(where: str) -> Any:
 
 
 def path_of(value: object, where: str) -> Path:
-    """Return a path that a user gave; raise `UsageError` if it is none."""
+    """Return a user's path; raise `UsageError` if it is none."""
     if not isinstance(value, str | os.PathLike):
         raise UsageError(f"{quote(value)} is no path", where, "a path, as text or a Path")
     return Path(value)
 
 
 def path_text(path: str | Path) -> str:
-    """Return a path as a message quotes it: printable and not cut, since its end says most."""
+    """Return a path quoted for a message, printable and not shortened, as its end matters most."""
     return one_line(f"'{path}'")
 
 

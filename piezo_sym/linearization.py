@@ -1,14 +1,12 @@
-"""Linear models: the derivatives of rates and outputs at a point, exact to round-off.
+"""Linear models: the derivatives of rates and outputs at a point, to round-off.
 
-Input: a model, and a point: an operating point, a state, or the inputs that lead to rest.  Output:
-a `LinearModel` with the matrices of
+Input: a model, and a point: an operating point, a state, or the inputs of an operating point.
+Output: a `LinearModel` with the matrices of
 
     d/dt dx = A dx + B du        dy = C dx + D du
 
-which are the chain rule of the generated Jacobian, for inputs and outputs, too.
+by the derivatives of the generated Jacobian, extended to inputs and outputs.
 """
-
-from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -43,7 +41,7 @@ WHERE = "linearize"
 @final
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """A model near a point, d/dt dx = A dx + B du, dy = C dx + D du; SI units.
+    """A linear model at a point, d/dt dx = A dx + B du, dy = C dx + D du; SI units.
 
     ``A, B, C, D = linearize(...)`` unpacks it, and ``scipy.signal.StateSpace(*linearize(...))``
     takes it.
@@ -55,7 +53,7 @@ class LinearModel:
         `y_<port>`, as in a Dataset.
     units : of each name.
     x, u, y : the point.
-    rates : dx/dt there: zero, to round-off, where it is at rest.
+    rates : dx/dt there: zero, to round-off, at a state of rest.
     """
 
     A: FloatArray
@@ -90,7 +88,7 @@ def linearize(
     inputs: Mapping[str, float] | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
 ) -> LinearModel:
-    """Return the linear model near a point; where a law has a kink there, that of one side.
+    """Return the linear model at a point; at the kink of a law, that of one side.
 
     >>> from piezo_sym import linearize
     >>> linear = linearize("piezo_stack", inputs={"V_in": 100.0})
@@ -102,10 +100,10 @@ def linearize(
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
-    at : an `operating_point`; or state -> number, of a bank also one per lane, SI units, the other
-        states at their initial values. Left out, the operating point of these inputs.
-    inputs : name -> number, SI units; the others are those of `at`, or have their defaults.
-    parameters : as for `simulate`; left out, those of `at`.
+    at : an `operating_point`; or state -> number, of a bank also one per lane, SI units, with the
+        other states at their initial values. When left out, the operating point of the inputs.
+    inputs : name -> number, SI units; those left out are as in `at`, or have their defaults.
+    parameters : as for `simulate`; when left out, those of `at`.
 
     Raises
     ------
@@ -132,21 +130,21 @@ def linearize(
 
 @lru_cache(maxsize=32)
 def _derivatives(model: Model) -> Any:
-    """Return a module whose Jacobian has the rows of rates, inputs, outputs, and these columns.
+    """Return a module whose states are states, inputs and outputs, and so is its Jacobian.
 
-    Only the rows of rates and outputs, and the columns of states and inputs, are not zero.
+    Only the rows of states (rates) and outputs, and the columns of states and inputs, are not zero.
     """
     q = quantities_of(derive(model))
-    found = {function.name: function.rows for function in functions_of(q)}
+    rows = {function.name: function.rows for function in functions_of(q)}
     program, new = program_of(q, ()), Names(q.taken)
     n, m = len(program.states), len(program.inputs)
     entries, derivatives = jacobian_of(
-        (*found["rhs"], *found["outputs"]),
+        (*rows["rhs"], *rows["outputs"]),
         (*program.states, *program.inputs),
         *(q.defined, q.lanes, new, q.temperatures),
     )
     outputs = (replace(field, name=new(f"y_{field.name}")) for field in program.outputs)
-    made = replace(
+    extended = replace(
         program,
         states=(*program.states, *program.inputs, *outputs),
         inputs=(),
@@ -155,7 +153,7 @@ def _derivatives(model: Model) -> Any:
         taken=frozenset(new.taken),
     )
     folder = temporary_folder() / f"{model.sha256}-linear"
-    return write_module(folder, model.name, {".py": numpy_module(sharp_program(made))})
+    return write_module(folder, model.name, {".py": numpy_module(sharp_program(extended))})
 
 
 def _linear(

@@ -1,10 +1,8 @@
-"""The user's cache of generated modules, and of their templates; and how modules are loaded.
+"""The user's cache of generated modules and of templates, and the loader of modules.
 
-Input: a model's name, and the hash of its spec or of its shape.  Output: a module, loaded, or a
-`Template`.  Another version of the package has another cache.
+Input: a model's name, and the hash of its spec or of its shape.  Output: a loaded module, or a
+`Template`.  Each version of the package has its own cache.
 """
-
-from __future__ import annotations
 
 import hashlib
 import importlib.util
@@ -21,14 +19,14 @@ from piezo_sym.spec.values import Template, from_text
 from piezo_sym.version import VERSION
 
 PACKAGE = Path(__file__).parent
-#: Of the package's own sources.
+#: Endings of the package's sources.
 SOURCES = (".py", ".c", ".h")
-#: What folders are called besides their hash: of a module that is not proved, and of a template.
+#: Endings of folders of modules that are not proved, and of templates.
 UNPROVED_FOLDER, SHAPE_FOLDER = "-unproved", "-shape"
 
 
 def cached_module(name: str, sha256: str, kind: str = "") -> ModuleType | None:
-    """Return a module from the cache; None if it is not there, or cannot be loaded."""
+    """Return a module from the cache; None if it is missing or cannot be loaded."""
     path = _path(name, sha256, kind)
     with suppress(FileError):
         return None if read_text(path) is None else load_module(path)
@@ -36,16 +34,16 @@ def cached_module(name: str, sha256: str, kind: str = "") -> ModuleType | None:
 
 
 def cache_module(name: str, sha256: str, texts: Mapping[str, str], kind: str = "") -> ModuleType:
-    """Return a module from its texts, which go to the cache."""
+    """Write a module's texts to the cache, and return the module."""
     folder = _path(name, sha256, kind).parent
     try:
         return write_module(folder, name, texts)
-    except FileError:  # a read-only cache: the module and its C live as long as the process
+    except FileError:  # the cache is read-only
         return write_module(temporary_folder() / folder.name, name, texts)
 
 
 def write_module(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleType:
-    """Return a module from its texts, which are written to a folder."""
+    """Write a module's texts to a folder, and return the module."""
     write_together({folder / f"{name}{ending}": text.encode() for ending, text in texts.items()})
     return load_module(folder / f"{name}.py")
 
@@ -58,10 +56,10 @@ def cached_template(name: str, shape: str) -> Template | None:
     return None
 
 
-def cache_template(name: str, shape: str, made: Template) -> None:
-    """Put the proved texts of a spec's shape into the cache, if it can be written."""
+def cache_template(name: str, shape: str, template: Template) -> None:
+    """Write the proved texts of a spec's shape to the cache, if possible."""
     with suppress(FileError):
-        write_text(_path(name, shape, SHAPE_FOLDER).with_suffix(".json"), made.to_text())
+        write_text(_path(name, shape, SHAPE_FOLDER).with_suffix(".json"), template.to_text())
 
 
 def _path(name: str, sha256: str, kind: str = "") -> Path:
@@ -73,22 +71,22 @@ def _path(name: str, sha256: str, kind: str = "") -> Path:
 
 @cache
 def _generator() -> str:
-    """Return the hash of the package's own sources: another generator, another cached module."""
-    found = hashlib.sha256(VERSION.encode())
+    """Return the hash of the package's own sources, so that an edit invalidates the cache."""
+    digest = hashlib.sha256(VERSION.encode())
     for path in sorted(PACKAGE.rglob("*.[pch]*")):
         if path.suffix in SOURCES and PACKAGE / "generated" not in path.parents:
-            found.update(path.read_bytes())
-    return found.hexdigest()[:16]
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def load_module(path: Path) -> ModuleType:
-    """Return the module in a file, loaded again when the file has changed."""
+    """Return the module in a file, which is loaded again after a change."""
     return _loaded(path.resolve(), read_text(path))
 
 
 @lru_cache(maxsize=64)
 def _loaded(path: Path, text: str | None) -> ModuleType:
-    del text  # it tells one content of the file from another
+    del text  # a key of the cache alone
     name = f"piezo_sym_generated_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:

@@ -1,10 +1,8 @@
-"""How far work is: a bar on a terminal, or a user's function.
+"""Progress of work: a bar on a terminal, or a user's function.
 
-Input: what a user said of `progress`.  Output: a function told how many runs of a sweep are done,
-or what time a run has reached; or the items of a list, one by one.
+Input: a user's argument `progress`.  Output: a function to call with the number of runs done, or
+the time that a run has reached; or the items of a list, with a bar.
 """
-
-from __future__ import annotations
 
 import sys
 import time
@@ -16,16 +14,16 @@ from piezo_sym.errors import UsageError, quote
 
 Tell: TypeAlias = Callable[..., object]
 ItemT = TypeVar("ItemT")
-#: A bar appears after so long [s].
+#: A bar appears after this time [s].
 SECOND = 1.0
 
 
 @contextmanager
 def progress_of(wanted: object, total: float, what: str, where: str) -> Iterator[Tell]:
-    """Give a function to be told how much of `total` is done, and more, for a user's function.
+    """Yield a function to call with the part of `total` done; a user's may take more arguments.
 
-    `wanted` is True or False; None for a bar on a terminal; or the user's function. `what` is what
-    the bar is called, `where` for messages.
+    `wanted` is True, False, None for a bar on a terminal, or the user's function. `what` is the
+    label of the bar, `where` the place in errors.
     """
     if callable(wanted):
         yield wanted
@@ -42,23 +40,23 @@ def progress_of(wanted: object, total: float, what: str, where: str) -> Iterator
     console = Console(stderr=True)
     done: Any = progress.TextColumn("{task.completed:.4g} of {task.total:.4g}")
     columns = progress.TextColumn(what), progress.BarColumn(), done, progress.TimeRemainingColumn()
-    drawn = progress.Progress(*columns, console=console, transient=console.is_terminal)
-    task, begun = drawn.add_task(what, total=total), time.monotonic()
+    bar = progress.Progress(*columns, console=console, transient=console.is_terminal)
+    task, begun = bar.add_task(what, total=total), time.monotonic()
 
     def tell(done: float, *_: object) -> None:
         if time.monotonic() - begun > SECOND:
-            drawn.start()  # once: later calls change nothing
-        drawn.update(task, completed=done)
+            bar.start()  # later calls change nothing
+        bar.update(task, completed=done)
 
     try:
         yield tell
     finally:
-        if drawn.live.is_started:
-            drawn.stop()
+        if bar.live.is_started:
+            bar.stop()
 
 
 def tracked(items: Sequence[ItemT], what: str) -> Iterator[ItemT]:
-    """Yield items, with a bar on a terminal; `what` they are, in the plural."""
+    """Yield items, with a bar on a terminal that is labelled `what`."""
     with progress_of(None, len(items), what, "") as tell:
         for done, item in enumerate(items):
             tell(done)

@@ -1,4 +1,4 @@
-"""Analysis of runs: measures of loops, periodic steady states, a dashboard, the paper's figures.
+"""Analysis: measures of loops, states of rest and periodic ones, a dashboard, the paper's figures.
 
 Input: runs (`xarray.Dataset`), or generated modules to run.  Output: numbers, frozen records,
 Matplotlib figures.  Nothing here imports a spec or SymPy.

@@ -1,17 +1,17 @@
-"""Settled states of a body's temperature, the heat balance of a period over it, and its zeros.
+"""Settled states at a given temperature of the body, their drift, and its zeros.
 
-Input: a `Stroboscope`, the body's temperatures T at t = 0.  Output: `Settled` states, in which
-everything but the body's entropy S repeats, by Newton's method; their drift, by which S does not;
-and those in which it is 0:
+Input: a `Stroboscope`, temperatures T of the body at t = 0.  Output: `Settled` states, by Newton's
+method, in which every state but the body's entropy S repeats after a period; the change of S, their
+drift; and the states in which the drift is 0:
 
     P_fast(x_fast, S; f) = x_fast        drift(T; f) = P_S(x_fast, S; f) - S
 
 At a zero, heat and cooling of a period balance: it is a periodic steady state.  This needs no
-separation of time scales.  Where the drift is the slowest motion, its sign says which way the
-temperature goes between zeros, and its slope at a zero whether that state is stable.
+separation of time scales.  Where the drift is the slowest motion, its sign is the direction of the
+temperature between zeros, and its slope at a zero says whether that state is stable.
 
-What every motion conserves, such as the difference in length of parallel springs, stays as it is;
-so does a motion that neither grows nor decays, such as a current that circulates in a dead zone.
+Conserved quantities, such as the difference in length of parallel springs, keep their values; so do
+motions that neither grow nor decay, such as a current that circulates in a dead zone.
 """
 
 import warnings
@@ -25,41 +25,38 @@ import numpy as np
 
 from piezo_sym.analysis.stroboscope import FLOOR, Period, Stroboscope
 from piezo_sym.errors import RunError
-from piezo_sym.run.checks import FloatArray, span_of
+from piezo_sym.run.checks import FloatArray, positive_range
 
 Rows: TypeAlias = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
-DIFFERENCE = 1e-4  # of a state's size, for difference quotients
-TOLERANCE = 1e-8  # of a state's size: a state that differs by less repeats
+DIFFERENCE = 1e-4  # step of difference quotients, over the size of the state
+TOLERANCE = 1e-8  # change of a state that repeats, over its size
 MOST_PERIODS = 20
 MOST_GROWTH = 2.0  # of the error in one iteration
-SHORTER = 0.25  # the step after one that failed
+SHORTER = 0.25  # the next step, over one that failed
 LONGEST = 2.0  # step of an iteration, in sizes of the states
-NEUTRAL = 1e-7  # smaller singular values belong to motions that neither grow nor decay
+NEUTRAL = 1e-7  # singular values below belong to motions that neither grow nor decay
 MOST_ITERATIONS = 12
-HOTTEST = 20.0  # times the temperature at the start: upper end of the range if none is given
-FIRST_RISE = 1e-4  # of the coldest temperature: the first step of a scan
+HOTTEST = 20.0  # upper end of the range, over the temperature at the start, if none is given
+FIRST_RISE = 1e-4  # the first step of a scan, over its coldest temperature
 POINTS = 40
-TURNING = 12  # states looked at around a least drift
-ZERO = 1e-10  # relative width of a bracket that counts as a zero
+TURNING = 12  # the most states in the search for a least drift
+ZERO = 1e-10  # width of a bracket of a zero, in log T
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """A state x (n,) in which everything but the body's entropy repeats after a period."""
+    """A state x (n,) in which all but the body's entropy repeats after a period."""
 
     temperature: float  # of the body at t = 0 [K]
     x: FloatArray
-    drift: float  # of the entropy in a period [J/K]
+    drift: float  # change of the body's entropy in a period [J/K]
     period: Period
 
 
 def settled(strobe: Stroboscope, T: float, near: FloatArray) -> Settled:
-    """Return the settled state at the temperature T, by Newton's method.
-
-    It starts from the state `near` (n,), whose entropy does not count.
-    """
+    """Return the settled state at the temperature T, by Newton's method from x = `near` (n,)."""
     best = x = strobe.at_temperature(near, T)
     fast = np.arange(x.size) != strobe.entropy_row(x)
     least, move = np.inf, np.zeros(x.size)
@@ -87,7 +84,7 @@ def settled(strobe: Stroboscope, T: float, near: FloatArray) -> Settled:
 def _move(
     strobe: Stroboscope, x: FloatArray, off: FloatArray, size: FloatArray, rows: Rows
 ) -> FloatArray:
-    """Return a step (n,) of Newton's method in some rows of the state, no longer than `LONGEST`."""
+    """Return Newton's step (n,) in these rows of the state, at most `LONGEST` sizes."""
     kept = strobe.conserved
     kept = kept[~kept[:, ~rows].any(axis=1)] * size
     slope = jacobian(strobe, x, size, rows)[rows] - np.eye(int(rows.sum()))
@@ -99,9 +96,9 @@ def _move(
 def jacobian(
     strobe: Stroboscope, x: FloatArray, size: FloatArray, rows: Rows | None = None
 ) -> FloatArray:
-    """Return dP/dx (n, n) in units of the states' sizes, by central differences.
+    """Return dP/dx (n, n), or its columns `rows`, in units of the states' sizes.
 
-    With `rows`, only the columns of these.
+    By central differences.
     """
     steps = np.diag(DIFFERENCE * size)[slice(None) if rows is None else rows]
     ends = strobe.ends(np.concatenate([x + steps, x - steps]))
@@ -110,27 +107,21 @@ def jacobian(
 
 
 def _solved(matrix: FloatArray, right: FloatArray, conserved: FloatArray) -> FloatArray:
-    """Return the smallest y with matrix y = right and conserved y = 0.
-
-    Other neutral motions have no part in it.
-    """
+    """Return the smallest y with matrix y = right, up to neutral motions, and conserved y = 0."""
     if not right.size:
         return right
-    whole = np.vstack([matrix, unit_rows(conserved)])
+    matrix = np.vstack([matrix, unit_rows(conserved)])
     right = np.append(right, np.zeros(len(conserved)))
-    return np.asarray(np.linalg.lstsq(whole, right, rcond=NEUTRAL)[0], dtype=float)
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=NEUTRAL)[0], dtype=float)
 
 
 def unit_rows(rows: FloatArray) -> FloatArray:
-    """Return orthogonal rows (k, n) of length 1 that span the same."""
+    """Return orthonormal rows (k, n) with the same span."""
     return np.linalg.qr((rows / np.linalg.norm(rows, axis=1, keepdims=True)).T)[0].T
 
 
 def fixed_point(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> FloatArray:
-    """Return the fixed point (n,) near x, by Newton's method with the Jacobian `slope` throughout.
-
-    It ends where the steps no longer get smaller: at round-off.
-    """
+    """Return the fixed point (n,) near x, to round-off, by Newton's method with one Jacobian."""
     matrix = slope - np.eye(x.size)
     error = np.inf
     for _ in range(MOST_ITERATIONS):
@@ -144,42 +135,42 @@ def fixed_point(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> FloatA
 
 
 class SteadyWarning(UserWarning):
-    """Part of a search for steady states could not be done, and where."""
+    """A part of a search for steady states that failed, and where."""
 
 
 def scan(
     strobe: Stroboscope, temperatures: Sequence[float], near: FloatArray
 ) -> Iterator[Settled | None]:
-    """Yield the settled state at each temperature, each found from the one before, or None."""
+    """Yield the settled state at each temperature, found from the one before, or None."""
     for T in temperatures:
         try:
-            found = settled(strobe, T, near)
+            state = settled(strobe, T, near)
         except RunError:
             yield None
         else:
-            near = found.x
-            yield found
+            near = state.x
+            yield state
 
 
 def temperature_range(
     strobe: Stroboscope, given: tuple[float, float] | None
 ) -> tuple[float, float]:
-    """Return the range to search [K]: what a user gave, or from the start on."""
+    """Return the range to search [K]: the user's, or `HOTTEST` times the module's start."""
     if given is None:
         T = strobe.temperature(strobe.start)
-        own = strobe.temperature(replace(strobe, initial={}).start)
-        return min(T, own), HOTTEST * own
-    return span_of(given, "periodic_steady_state.temperatures", "K")
+        default = strobe.temperature(replace(strobe, initial={}).start)
+        return min(T, default), HOTTEST * default
+    return positive_range(given, "periodic_steady_state.temperatures", "K")
 
 
 def grid(low: float, high: float, points: int = POINTS) -> list[float]:
-    """Return temperatures from `low` to `high`; their rises over `low` are a geometric series."""
+    """Return temperatures from `low` to `high`; the rises over `low` are a geometric series."""
     most = high / low - 1
     return [low, *(low * (1 + np.geomspace(min(FIRST_RISE, most / 2), most, points))).tolist()]
 
 
 def between(a: Settled, b: Settled) -> str:
-    """Return the temperatures from one state to another in words."""
+    """Return the range of temperatures between two states, for a message."""
     low, high = sorted([a.temperature, b.temperature])
     if low == high:
         return f"at {low:.6g} K, where the range ends,"
@@ -189,9 +180,8 @@ def between(a: Settled, b: Settled) -> str:
 def zeros(strobe: Stroboscope, known: Sequence[Settled]) -> list[Settled]:
     """Return the zeros of the drift between settled states in order of temperature.
 
-    Where |drift| has a minimum without a change of sign, it is searched, so that two zeros close
-    together are found.  Where nothing settles on the way to a zero, for the settled state jumps
-    there, a warning says so.
+    Where |drift| has a minimum without a change of sign, it is minimized, to find two zeros close
+    together. Where the settled state jumps on the way to a zero, there is a warning.
     """
     from scipy.optimize import brentq, minimize_scalar  # loads slowly, and runs need none
 
@@ -212,9 +202,9 @@ def zeros(strobe: Stroboscope, known: Sequence[Settled]) -> list[Settled]:
         least = abs(b.drift) < min(abs(a.drift), abs(c.drift))
         if least and a.drift * b.drift > 0 < b.drift * c.drift:
             low, high = np.log([a.temperature, c.temperature])
-            with suppress(RunError):  # the settled state jumps there: keep what is found
-                how: Any = {"bounds": (low, high), "method": "bounded"}
-                how |= {"options": {"xatol": 1e-6, "maxiter": TURNING}}
+            how: Any = {"bounds": (low, high), "method": "bounded"}
+            how |= {"options": {"xatol": 1e-6, "maxiter": TURNING}}
+            with suppress(RunError):  # the settled state jumps there
                 minimize_scalar(lambda log_T: abs(drift(log_T)), **how)
     found = [state for state in states.values() if state.drift == 0]
     for (x, a), (y, b) in pairwise(sorted(states.items())):

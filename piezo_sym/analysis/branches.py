@@ -1,10 +1,10 @@
-"""Branches of periodic steady states over the frequency of the drive, their folds, and the jumps.
+"""Branches of periodic steady states over the frequency of the drive, their folds and jumps.
 
-Input: a generated module with one body, its inputs as a function of the frequency, a range of
-frequencies and of temperatures.  Output: `Branches`: curves in the plane of frequency and
-temperature, stable or not, and the jumps where a stable part ends.
+Input: a generated module with one body, its inputs as a function of the frequency, ranges of
+frequency and temperature.  Output: `Branches`: curves in the plane of frequency and temperature,
+stable or not, and the jumps where a stable part ends.
 
-    drift(T, f) = 0        traced as a curve in (log f, log T), from every zero at the two ends
+    drift(T, f) = 0        trace as a curve in (log f, log T), from every zero at the two ends
 
 A stable part ends in a fold, where it meets an unstable one.  When the frequency moves past a
 fold, the temperature jumps to another branch, up or down.
@@ -18,10 +18,10 @@ from typing import final
 import numpy as np
 
 from piezo_sym.analysis.balance import grid, scan, settled, temperature_range, zeros
-from piezo_sym.analysis.curves import Curve, CurvePoint, folds, traced
+from piezo_sym.analysis.curves import Curve, CurvePoint, folds, trace
 from piezo_sym.analysis.repeating import Driven, refuse_not_following
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
-from piezo_sym.run.checks import FloatArray, span_of
+from piezo_sym.run.checks import FloatArray, positive_range
 from piezo_sym.run.module import GeneratedModule, checked
 from piezo_sym.run.parameters import LaneValue
 
@@ -32,14 +32,14 @@ SAME = 1e-3  # zeros that differ by less in log T are one
 @final
 @dataclass(frozen=True)
 class Jump:
-    """Where a stable part of a curve ends: past this frequency the temperature jumps.
+    """The end of a stable part of a curve, past which the temperature jumps.
 
     Attributes
     ----------
-    frequency : at which it ends [Hz].
-    upward : whether it ends as the frequency rises.
-    temperature : mean of the body there [K].
-    lands : mean temperature of the stable state that it jumps to [K], nan if none is known.
+    frequency : of the end [Hz].
+    upward : whether the frequency rises towards it.
+    temperature : mean temperature of the body there [K].
+    lands : mean temperature of the stable state after the jump [K], nan if none is known.
     """
 
     frequency: float
@@ -73,11 +73,11 @@ class Branches:
         return f"Branches(curves: {len(self.curves)}, points: {points}, jumps: {jumps})"
 
     def table(self) -> dict[str, FloatArray]:
-        """Return columns, a row per point.
+        """Return columns with a row per point, by the names of `COLUMNS`.
 
         The number of its curve, frequency [Hz], temperature (mean), coldest and hottest [K], stable
-        (0 or 1), and at a fold the temperature that the body jumps to [K] (inf if beyond the
-        range), elsewhere nan.
+        (0 or 1), and at a fold the temperature after the jump [K] (inf if beyond the range),
+        elsewhere nan.
         """
         lands = {j.frequency: np.inf if np.isnan(j.lands) else j.lands for j in self.jumps}
         rows = [
@@ -119,11 +119,11 @@ def steady_branches(
 
     Notes
     -----
-    Curves that touch neither end of the range of frequencies are not found. Temperatures are those
-    of 256 steps a period, within about 1e-4 of the rise over the environment; where more is asked
-    for, give a point's frequency to `periodic_steady_state`.
+    Curves that reach neither end of the range of frequencies are not found. Temperatures are those
+    of 256 steps per period, within about 1e-4 of the rise over the environment; for more accuracy,
+    give a point's frequency to `periodic_steady_state`.
     """
-    low, high = span_of(frequencies, "steady_branches.frequencies", "Hz")
+    low, high = positive_range(frequencies, "steady_branches.frequencies", "Hz")
     refuse_not_following(checked(module), inputs, low, high)
     strobe = stroboscope(module, inputs, low, parameters, initial, STEPS)
     span = np.log([[low, high], temperature_range(strobe, temperatures)])
@@ -149,7 +149,7 @@ def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[Curve]:
             place = np.array([log_f, np.log(zero.temperature)])
             if any(np.max(np.abs(place - other)) < SAME for other in reached):
                 continue
-            curve = tuple(traced(end, place, zero, way, span))
+            curve = tuple(trace(end, place, zero, way, span))
             if not curve:
                 continue
             reached += [curve[0].place, curve[-1].place]
@@ -157,17 +157,17 @@ def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[Curve]:
 
 
 def _jump(strobe: Stroboscope, curves: Sequence[Curve], fold: CurvePoint, upward: bool) -> Jump:
-    """Return the jump at a fold: the sign of the drift just past it gives the direction."""
+    """Return the jump at a fold, in the direction of the drift just past it."""
     beyond = fold.frequency * (1.01 if upward else 0.99)
     heats = settled(strobe.at(beyond), fold.state.temperature, fold.state.x).drift > 0
-    log_f = float(np.log(beyond))
-    found = [p for p in _crossings(curves, log_f) if (p[0] > fold.place[1]) == heats]
-    found.sort(reverse=not heats)
-    lands = found[0][1] if found else np.nan
+    crossings = _crossings(curves, float(np.log(beyond)))
+    reached = sorted((p for p in crossings if (p[0] > fold.place[1]) == heats), reverse=not heats)
+    lands = reached[0][1] if reached else np.nan
     return Jump(fold.frequency, upward, fold.state.period.mean, float(lands))
 
 
 def _crossings(curves: Sequence[Curve], log_f: float) -> Iterator[tuple[float, float]]:
+    """Yield log T at t = 0 and the mean temperature [K] of the stable states at a frequency."""
     for curve in curves:
         for a, b in pairwise(curve):
             if a.stable and b.stable and (a.place[0] - log_f) * (b.place[0] - log_f) <= 0:

@@ -4,8 +4,8 @@ Input: a `Stroboscope`, a zero of its drift, the ranges of both axes.  Output: p
 
     drift(T, f) = 0        in (log f, log T)
 
-A step goes along the last chord, then by the secant method at a right angle to it, to where the
-drift is zero again.  So a curve is followed around its folds, where it is vertical over f.
+A step follows the last chord, then the secant method goes at a right angle to it to a zero of the
+drift.  So a curve is followed around its folds, where it is vertical over f.
 """
 
 import warnings
@@ -38,12 +38,12 @@ class CurvePoint:
     frequency: float
     state: Settled
     rising: float  # derivative of the drift per second by log T: stable if negative
-    steepness: float  # the same along the line on which the point was found
+    steepness: float  # that along the line on which the point was found
     place: FloatArray  # (log f, log T)
 
     @property
     def stable(self) -> bool:
-        """Whether the body comes back to this temperature."""
+        """Whether the body returns to this temperature."""
         return self.rising < 0
 
     def described(self) -> tuple[float, ...]:
@@ -55,17 +55,17 @@ class CurvePoint:
 Curve: TypeAlias = tuple[CurvePoint, ...]
 
 
-def traced(
-    strobe: Stroboscope, place: FloatArray, zero: Settled, way: float, span: FloatArray
+def trace(
+    strobe: Stroboscope, place: FloatArray, zero: Settled, direction: float, span: FloatArray
 ) -> Iterator[CurvePoint]:
-    """Yield the points of the curve from a zero on, to where it leaves the ranges.
+    """Yield the points of the curve from a zero to the edge of `span`.
 
-    The frequency rises at first if `way` is 1, and falls if it is -1; `span` (2, 2) is least and
-    greatest log f, and log T.
+    The frequency rises at first if `direction` is 1, and falls if it is -1; `span` (2, 2) is the
+    range of log f, and of log T.
     """
-    tangent, known = np.array([way, 0.0]), False
+    tangent, known = np.array([direction, 0.0]), False
     try:
-        point = _corrected(strobe, place, np.array([0.0, 1.0]), zero)
+        point = _correct(strobe, place, np.array([0.0, 1.0]), zero)
     except RunError as error:
         warnings.warn(f"{error}; a curve is left out", SteadyWarning, stacklevel=4)
         return
@@ -94,7 +94,7 @@ def traced(
 def _next(
     strobe: Stroboscope, point: CurvePoint, tangent: FloatArray, length: float, span: FloatArray
 ) -> CurvePoint | None:
-    """Return the next point, about `length` on or where f leaves its range; None: none is found."""
+    """Return the next point, at about `length` or where f leaves its range, or None."""
     guess = point.place + length * tangent
     across, hint = np.array([-tangent[1], tangent[0]]), point.steepness
     if not span[0, 0] <= guess[0] <= span[0, 1]:
@@ -103,14 +103,14 @@ def _next(
         guess = np.array([edge, (point.place + part * length * tangent)[1]])
         across, hint = np.array([0.0, 1.0]), point.rising
     try:
-        new = _corrected(strobe, guess, across, point.state, hint)
+        new = _correct(strobe, guess, across, point.state, hint)
     except RunError:
         return None
     far = float(np.hypot(*(new.place - point.place)))
     return new if EXACT < far < 2 * length else None
 
 
-def _corrected(
+def _correct(
     strobe: Stroboscope,
     guess: FloatArray,
     across: FloatArray,
@@ -119,7 +119,7 @@ def _corrected(
 ) -> CurvePoint:
     """Return the zero of the drift on the line through `guess` along `across`, by secants.
 
-    `steepness` is the derivative of the drift per second along it, if known from a point nearby.
+    `steepness` is the derivative of the drift per second along the line, 0 if it is unknown.
     """
     s, before = 0.0, (0.0, 0.0)
     for n in range(MOST_SECANTS):
@@ -141,7 +141,7 @@ def _corrected(
 
 
 def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, CurvePoint, bool]]:
-    """Yield the index of the point nearest to a fold, the fold, and whether f is highest there."""
+    """Yield the index of the point nearest to a fold, the fold, and whether f is greatest there."""
     for n in range(1, len(curve) - 1):
         a, b, c = curve[n - 1 : n + 2]
         if (b.place[0] - a.place[0]) * (c.place[0] - b.place[0]) < 0:
@@ -149,17 +149,17 @@ def folds(strobe: Stroboscope, curve: Curve) -> Iterator[tuple[int, CurvePoint, 
 
 
 def _fold(strobe: Stroboscope, a: CurvePoint, b: CurvePoint, c: CurvePoint) -> CurvePoint:
-    """Return the point of extreme frequency between three, by log f over log T."""
+    """Return the point of extreme frequency near b, between a and c, by log f over log T."""
     from scipy.optimize import minimize_scalar  # loads slowly, and runs need none
 
     points = [b]
-    way = 1.0 if b.place[0] > a.place[0] else -1.0
+    sign = 1.0 if b.place[0] > a.place[0] else -1.0
 
-    def beyond(log_T: float) -> float:
+    def objective(log_T: float) -> float:
         guess = np.array([b.place[0], log_T])
-        points.append(_corrected(strobe, guess, np.array([1.0, 0.0]), b.state))
-        return float(-way * points[-1].place[0])
+        points.append(_correct(strobe, guess, np.array([1.0, 0.0]), b.state))
+        return float(-sign * points[-1].place[0])
 
     low, high = sorted([a.place[1], c.place[1]])
-    minimize_scalar(beyond, bounds=(low, high), method="bounded", options={"xatol": FOLD})
-    return max(points, key=lambda point: float(way * point.place[0]))
+    minimize_scalar(objective, bounds=(low, high), method="bounded", options={"xatol": FOLD})
+    return max(points, key=lambda point: float(sign * point.place[0]))

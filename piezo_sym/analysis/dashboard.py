@@ -2,34 +2,30 @@
 
 Input: the `xarray.Dataset` of a run.  Output: a Matplotlib figure with one panel per unit of the
 states, inputs, outputs and temperatures; heat released and entropy produced, stacked by process;
-the residual of the energy balance.  Empty panels are left out.
+and the residual of the energy balance; without empty panels.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeAlias
 
 import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from piezo_sym.analysis.style import COLOURS, DASHES, LABEL, SMALL, dress
 from piezo_sym.errors import UsageError, listing, one_line, quote
 from piezo_sym.run.checks import FloatArray
 
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    Panel = tuple[str, Callable[[Axes], None]]
+Panel: TypeAlias = tuple[str, Callable[[Axes], None]]
 
 ACROSS = 3  # panels in a row
 WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
-ABROAD = 48  # characters of a legend, beside the power of ten of an axis
-HANDLE = 5  # characters that the line beside a name takes
-HATCHES = ("", "///", "...", "xxx")  # of areas whose colours are used up
-BESIDE = 24  # characters of names beside an axis
+LEGEND_WIDTH = 48  # characters of a legend, beside the power of ten of an axis
+HANDLE_WIDTH = 5  # characters that the line beside a name takes
+HATCHES = ("", "///", "...", "xxx")  # for areas that share a colour
+LABEL_WIDTH = 24  # characters of names beside an axis
 MOST_LANES = 8  # drawn one by one; of more, the mean and the range are drawn
 LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
 SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
@@ -52,8 +48,6 @@ def plot(run: xarray.Dataset) -> Figure:
     ------
     UsageError : this is no run, or more than one.
     """
-    from matplotlib.figure import Figure
-
     refuse_others(run)
     panels = list(_panels(run))
     rows = -(-len(panels) // ACROSS)
@@ -112,19 +106,19 @@ def _panels(run: xarray.Dataset) -> Iterator[Panel]:
 
 
 def _shown(names: list[str]) -> str:
-    """Return the first names of a panel, as many as stand beside it; its legend has all."""
-    count = max([1, *(n for n in (2, 3) if len(", ".join(names[:n])) <= BESIDE)])
+    """Return the names of a panel, as many as fit beside it; its legend has all of them."""
+    count = max([1, *(n for n in (2, 3) if len(", ".join(names[:n])) <= LABEL_WIDTH)])
     return ", ".join(names[:count]) + (", ..." if len(names) > count else "")
 
 
 def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
+    names: dict[str, list[str]] = {}
     for name in map(str, run.data_vars):
         doubled = name.startswith("y_") and run[name].attrs.get("units") == "K"  # a body's T
         if "time" not in run[name].dims or name in LEDGER or name.startswith(SUMS) or doubled:
             continue
-        found.setdefault(str(run[name].attrs.get("units", "1")), []).append(name)
-    return found
+        names.setdefault(str(run[name].attrs.get("units", "1")), []).append(name)
+    return names
 
 
 def _lines(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str = "") -> None:
@@ -169,10 +163,10 @@ def _stack(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str) -> No
 
 
 def _small_legend(axes: Axes) -> None:
-    """Name every curve above its panel, unless there is one and the panel's label names it."""
+    """Add a legend above a panel, unless its only curve is named by the panel's label."""
     names = axes.get_legend_handles_labels()[1]
     if len(names) > 1 or names[0] not in axes.get_ylabel():
-        columns = max(1, ABROAD // (max(map(len, names)) + HANDLE))
+        columns = max(1, LEGEND_WIDTH // (max(map(len, names)) + HANDLE_WIDTH))
         rows = -(-len(names) // columns)
         axes.legend(
             **{"fontsize": SMALL - 1, "loc": "lower right", "bbox_to_anchor": (1.0, 1.0)},

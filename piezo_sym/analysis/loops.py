@@ -1,28 +1,23 @@
 """Measures of a hysteresis loop: area, width, slope of its chord, phase, closure.
 
-Input: the samples (n,) of one period, in order, both ends included: of the drive x, such as a
-voltage, and of the response y, such as a displacement or a charge.  Output: numbers in the units of
-the two.
+Input: samples (n,) of one period, in order, with both ends: of the drive x, such as a voltage, and
+of the response y, such as a displacement or a charge.  Output: numbers in the units of x and y.
 
     area = closed integral of x dy      > 0 where y lags behind x
 
-The area of voltage against charge drawn is the energy put in per cycle; in periodic steady state it
-is the heat of that cycle, if no other port puts energy in.
+The area of voltage over the charge drawn is the energy put in per cycle; in periodic steady state
+it is the heat of the cycle, if no other port puts energy in.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, final
+from typing import final
 
 import numpy as np
+import xarray
 from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, nearest
 from piezo_sym.run.checks import FloatArray, positive
-
-if TYPE_CHECKING:
-    import xarray
 
 FEWEST = 8  # samples; fewer make no loop
 
@@ -52,7 +47,8 @@ def measure(x: ArrayLike, y: ArrayLike) -> Loop:
 def area(x: ArrayLike, y: ArrayLike) -> float:
     """Return the closed integral of x dy; the ends are joined by a straight line.
 
-    Of order two in the distance of samples: 400 a period give 4e-5 of a smooth loop's area.
+    The error is of order two in the distance of samples: with 400 per period, 4e-5 of a smooth
+    loop's area.
     """
     a, b = _loop(x, y)
     a, b = a - a[0], b - b[0]
@@ -60,7 +56,7 @@ def area(x: ArrayLike, y: ArrayLike) -> float:
 
 
 def width(x: ArrayLike, y: ArrayLike, at: float = 0.0) -> float:
-    """Return the greatest distance in y of two crossings of x through the value `at`.
+    """Return the greatest distance in y between two crossings of x through the value `at`.
 
     Raises
     ------
@@ -142,7 +138,6 @@ def drawn(run: xarray.Dataset, port: str) -> xarray.DataArray:
     ------
     UsageError : the run has no such port.
     """
-    import xarray
     from scipy.interpolate import CubicSpline
 
     ports = [str(name)[2:] for name in run.data_vars if str(name).startswith("y_")]

@@ -6,11 +6,9 @@ an `OperatingPoint`, or a `RunError` that says why there is none.
     rhs(x, u) = 0       in all rows but the entropies of held bodies
 
 Steps of the implicit Euler method, each longer than the last, follow the motion from the initial
-state to rest; Newton's method ends it. Directions in which the rates do not change (a current that
-circulates within dead zones) stay where they were.
+state towards rest; Newton's method ends the search.  Directions in which the rates do not change (a
+current that circulates within dead zones) keep their initial values.
 """
-
-from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,9 +25,9 @@ from piezo_sym.run.module import GeneratedModule, by_name, checked, row_name
 from piezo_sym.run.parameters import (
     LaneValue,
     entropy_row,
-    put_temperature,
     read_initial,
     read_parameters,
+    set_temperature,
 )
 
 WHERE = "operating_point"
@@ -43,16 +41,16 @@ class OperatingPoint:
     Attributes
     ----------
     inputs : name -> value.
-    initial : the state by name, a bank's as one value per lane: `simulate(initial=...)` takes it.
-    x, u : the same as arrays (n,), banks spread, and (m,).
-    parameters : those that were given, as `simulate` takes them.
+    initial : the state by name, of a bank one value per lane, as for `simulate(initial=...)`.
+    x, u : state (n,), banks spread, and inputs (m,).
+    parameters : those that were given, as for `simulate`.
     outputs : `y_<port>` -> value.
     temperatures : body -> temperature [K].
-    holding : held body -> heat [W] that has to be put in so that its temperature stays.
+    holding : held body -> heat [W] to be supplied to keep its temperature.
     eigenvalues : of the Jacobian of all states that are not held [1/s].
     stable : whether none of them has a positive real part, beyond round-off.
-    undetermined : rows of x along which other states are at rest, too; they are as near to the
-        initial state as any.
+    undetermined : rows of x that differ between states of rest; x is the one nearest to the
+        initial state.
     """
 
     inputs: Mapping[str, float]
@@ -83,7 +81,7 @@ def operating_point(
     parameters: Mapping[str, LaneValue] | None = None,
     initial: Mapping[str, LaneValue] | None = None,
 ) -> OperatingPoint:
-    """Return the state of rest under constant inputs, near the one a run from the start goes to.
+    """Return the state of rest under constant inputs near the one that a run approaches.
 
     >>> from piezo_sym import operating_point
     >>> operating_point("piezo_stack", inputs={"V_in": 100.0}).initial["q"]
@@ -94,14 +92,14 @@ def operating_point(
     module : a generated module; `piezo_sym.operating_point` also takes a model, name, path.
     inputs : name -> number, SI units; the others have their defaults.
     temperatures : body -> temperature [K] at which it is held; the other bodies are free.
-    parameters, initial : as for `simulate`; `initial` is where the search begins.
+    parameters, initial : as for `simulate`; the search begins at `initial`.
 
     Raises
     ------
     UsageError : a name is unknown, or a value is no number.
-    RunError : there is no state of rest (a rate that nothing stops is named), none is found in the
-        domain, or the temperature of a free body is left open because nothing exchanges heat with
-        the surroundings.
+    RunError : there is no state of rest (the error names a state that keeps moving), none is found
+        in the domain, or the temperature of a free body is undetermined because nothing exchanges
+        heat with the surroundings.
     """
     p = read_parameters(checked(module), parameters)
     u = read_constants(module, inputs)
@@ -110,7 +108,7 @@ def operating_point(
     held = _held(module, p, start, temperatures)
     free = np.setdiff1d(np.arange(start.size), list(held.values()))
     search = RestSearch(module, p, u, free)
-    x, size = search.settled(start)
+    x, size = search.approach(start)
     x = search.at_rest(x, size)
     undetermined = search.undetermined(x, size)
     _refuse_open_bodies(module, p, x, undetermined)
@@ -120,7 +118,7 @@ def operating_point(
 def read_constants(
     module: GeneratedModule, given: Mapping[str, float] | None, where: str = f"{WHERE}.inputs"
 ) -> FloatArray:
-    """Return constant inputs u (m,): those given, and defaults; `where` is for messages."""
+    """Return constant inputs u (m,): those given, else the defaults."""
     names = [record.name for record in module.INPUTS]
     values = known_keys(given, names, where)
     default = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
@@ -130,10 +128,10 @@ def read_constants(
 def _held(
     module: GeneratedModule, p: Any, x: FloatArray, given: Mapping[str, float] | None
 ) -> dict[str, int]:
-    """Return the entropy's row of each held body, and put its value into x (n,)."""
+    """Set the entropies of held bodies in x (n,), and return the row of each."""
     bodies, where = [record.name for record in module.BODIES], f"{WHERE}.temperatures"
     return {
-        name: put_temperature(module, p, x, bodies.index(name), value, f"{where}.{name}")
+        name: set_temperature(module, p, x, bodies.index(name), value, f"{where}.{name}")
         for name, value in known_keys(given, bodies, where).items()
     }
 
@@ -141,14 +139,15 @@ def _held(
 def _refuse_open_bodies(
     module: GeneratedModule, p: Any, x: FloatArray, undetermined: list[int]
 ) -> None:
+    """Raise `RunError` if the temperature of a body differs between states of rest."""
     if not undetermined:
         return
     step = np.zeros((x.size, len(undetermined)))
     step[undetermined, range(len(undetermined))] = 1e-6 * np.maximum(1.0, np.abs(x[undetermined]))
-    moved = np.asarray(module.temperatures(x[:, None] + step, p))
-    still = np.asarray(module.temperatures(x, p))[:, None]
-    for body, moves in zip(module.BODIES, moved != still, strict=True):
-        if np.any(moves):
+    changed = np.asarray(module.temperatures(x[:, None] + step, p))
+    temperatures = np.asarray(module.temperatures(x, p))[:, None]
+    for body, differs in zip(module.BODIES, changed != temperatures, strict=True):
+        if np.any(differs):
             what = f"rest leaves the temperature of '{body.name}' open: it depends on the way there"
             held = f"operating_point(..., temperatures={{'{body.name}': ...}})"
             remedy = f"hold it: {held}, for linearize as 'at'; or simulate() until it rests"

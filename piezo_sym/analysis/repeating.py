@@ -1,7 +1,7 @@
-"""Checks of periodic inputs: do they repeat, and how many steps per period resolve them.
+"""Checks of periodic inputs, and the steps per period that resolve them.
 
 Input: the inputs of a module by name, their frequency.  Output: an error for an input that does not
-repeat; the number of steps per period that resolve every input.
+repeat; the number of steps per period that resolves every input.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -16,13 +16,13 @@ from piezo_sym.run.samples import Samples
 
 Driven: TypeAlias = Callable[[float], Mapping[str, InputValue]]
 
-SAME = 1e-6  # of an input's size: a value that differs by less repeats
+SAME = 1e-6  # difference of values that repeat, over the input's size
 GOLDEN = 0.6180339887498949
-#: Where inputs are evaluated, as parts of a period; irregular, so that no harmonic is missed.
+#: Times at which inputs are evaluated, over the period; irregular, so that no harmonic is missed.
 PROBES = np.sort(np.r_[0.0, np.modf(np.arange(1, 64) * GOLDEN)[0]])
-MOST_STEPS = 1 << 14  # per period: they resolve a sine of 2048 cycles in it
+MOST_STEPS = 1 << 14  # per period: enough for a sine of 2048 cycles in it
 COMMON = "give the frequency that the inputs have in common"
-FREQUENCIES = 33  # at which a range of frequencies is checked, its ends included
+FREQUENCIES = 33  # checked in a range of frequencies, with its ends
 FOLLOW = "let the inputs follow the frequency"
 DRIVEN = "a function of the frequency in Hz, such as lambda f: {'V_in': sine(100, f)}"
 
@@ -34,7 +34,7 @@ def refuse_unperiodic(
     caller: str = "periodic_steady_state",
     remedy: str = COMMON,
 ) -> None:
-    """Raise `UsageError` if an input is not the same one period later, with this remedy."""
+    """Raise `UsageError`, with this remedy, if an input is not the same one period later."""
     period = 1 / frequency
     read_inputs(module, inputs, period)
     for name, value in (inputs or {}).items():

@@ -1,15 +1,15 @@
 """Periodic steady states of a driven model: states that repeat after one period of the inputs.
 
-Input: a generated module with one body, periodic inputs, their frequency.  Output: a `SteadyState`,
-or all of them: one period as a Dataset, the body's temperature, the heat of a period, the error of
-repetition, and whether it is stable.
+Input: a generated module with one body, periodic inputs, their frequency.  Output: one or all
+`SteadyState`s: one period as a Dataset, the body's temperature, the heat of a period, the error of
+repetition, and stability.
 
     P(x; f) = x        P: the state to that one period later; stable: |eigenvalues of dP/dx| <= 1
 
-They are found in two stages: zeros of the heat balance over a range of temperatures (`balance`),
-then Newton's method on the whole state, with the steps per period doubled until it converges.
-There can be several steady states: ``piezo_stack`` at 50 Hz has one at 354 K, one at 4750 K, and an
-unstable one between them, from which the temperature goes to one of the others.
+The search has two stages: zeros of the drift over a range of temperatures (`balance`), then
+Newton's method for all states, with the steps per period doubled until it converges.  There can be
+several steady states: ``piezo_stack`` at 50 Hz has one at 354 K, one at 4750 K, and an unstable one
+between them, from which the temperature goes to one of the others.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ RTOL = 1e-6
 STEPS, MOST_STEPS = 256, 1 << 16  # per period
 SAMPLES = 400  # of the orbit returned
 ORBIT_RTOL = 1e-8
-#: Largest residual of a steady state: times its accuracy, and in all.
+#: The largest residual of a steady state, over its accuracy and in absolute terms.
 RESIDUAL, MOST_RESIDUAL = 100.0, 0.1
-MARGIN = 1e-6  # of a multiplier over 1: the accuracy of its difference quotient
+MARGIN = 1e-6  # the error of a multiplier, by its difference quotient
 
 
 @final
@@ -59,12 +59,12 @@ class SteadyState:
     Attributes
     ----------
     frequency : of the inputs [Hz].
-    temperature, coldest, hottest : of the body, over a period: mean, least, greatest.
+    temperature, coldest, hottest : mean, least and greatest of the body in a period.
     loss : heat released by all processes in a period [J].
-    residual : largest change of a state over `orbit`, as a part of its size.
+    residual : largest change of a state over `orbit`, over its size.
     multiplier : the greatest magnitude of the eigenvalues of dP/dx.
     stable : whether the multiplier is at most 1: motions that neither grow nor decay are allowed.
-    initial : the state at t = 0, as `simulate(initial=...)` takes it.
+    initial : the state at t = 0, as for `simulate(initial=...)`.
     orbit : one period, 401 samples, as `simulate` returns it.
     """
 
@@ -95,11 +95,10 @@ def periodic_steady_state(
     temperatures: tuple[float, float] | None = None,
     rtol: float = RTOL,
 ) -> SteadyState:
-    """Return the periodic steady state that a run from its initial state goes to.
+    """Return the periodic steady state that a run from its initial state approaches.
 
-    That is the first zero of the heat balance in the direction in which the body's temperature
-    drifts at the start, once all else has settled. Where the temperature is not the slowest motion,
-    compare with a run.
+    That is the first zero of the drift in its direction at the start, once all other states have
+    settled. Where the temperature is not the slowest motion, compare with a run.
 
     >>> from piezo_sym import periodic_steady_state, sine
     >>> periodic_steady_state("piezo_stack", inputs={"V_in": sine(100, 50)}, frequency=50)
@@ -110,21 +109,22 @@ def periodic_steady_state(
     module : a generated module; `piezo_sym.periodic_steady_state` also takes a model, name, path.
     inputs : as for `simulate`; they repeat with the period 1/frequency.
     frequency : of the inputs [Hz]; of several, the greatest that they have in common. If no input
-        varies, a state of rest is searched for; `simulate` may find it sooner.
+        varies, a state of rest is searched for; `operating_point` does that directly.
     parameters, initial : as for `simulate`.
     temperatures : range to search [K]: least and greatest, of the body at t = 0; when left out,
         from the module's own start (lower if the body cools there) to 20 times that.
-    rtol : accuracy of the states at t = 0, as a part of their sizes, 1e-9 to 0.01.
+    rtol : accuracy of the states at t = 0, over their sizes, 1e-9 to 0.01.
 
     Raises
     ------
     UsageError : an argument is wrong, an input does not repeat or varies too fast for the period,
         or the model has not exactly one body.
-    RunError : no steady state lies in the range; the message says which way the body drifts.
+    RunError : no steady state lies in the range; the message has the direction of the drift.
     EngineError : there is no C compiler.
     """
-    strobe, accuracy = _begun(module, inputs, frequency, parameters, initial, rtol)
-    return _state(strobe, _first(strobe, _known(strobe, temperatures)), accuracy)
+    strobe, accuracy = _read(module, inputs, frequency, parameters, initial, rtol)
+    zero = _first_zero(strobe, _settled_states(strobe, temperatures))
+    return _steady_state(strobe, zero, accuracy)
 
 
 def periodic_steady_states(
@@ -139,16 +139,16 @@ def periodic_steady_states(
 ) -> tuple[SteadyState, ...]:
     """Return all periodic steady states in a range of temperatures, stable or not, coldest first.
 
-    Two that differ by less than a hundredth of their temperature may be missed, and states whose
+    States that differ by less than a hundredth of their temperature may be missed, and those whose
     period is a multiple of the inputs' are not found. Parameters and errors are as for
-    `periodic_steady_state`, but to find none is no error.
+    `periodic_steady_state`, but the result may be empty.
     """
-    strobe, accuracy = _begun(module, inputs, frequency, parameters, initial, rtol)
-    found = zeros(strobe, _known(strobe, temperatures))
-    return tuple(_state(strobe, zero, accuracy) for zero in found)
+    strobe, accuracy = _read(module, inputs, frequency, parameters, initial, rtol)
+    found = zeros(strobe, _settled_states(strobe, temperatures))
+    return tuple(_steady_state(strobe, zero, accuracy) for zero in found)
 
 
-def _begun(
+def _read(
     module: GeneratedModule,
     inputs: Mapping[str, InputValue],
     frequency: float,
@@ -156,7 +156,7 @@ def _begun(
     initial: Mapping[str, LaneValue] | None,
     rtol: object,
 ) -> tuple[Stroboscope, float]:
-    """Return what is searched, and the accuracy asked for."""
+    """Return the stroboscope and the accuracy of a search."""
     f = positive(frequency, "periodic_steady_state.frequency")
     strobe = stroboscope(module, lambda _: inputs, f, parameters, initial, STEPS)
     accuracy = number(rtol, "periodic_steady_state.rtol")
@@ -166,16 +166,16 @@ def _begun(
     return strobe, accuracy
 
 
-def _known(strobe: Stroboscope, given: tuple[float, float] | None) -> list[Settled]:
+def _settled_states(strobe: Stroboscope, given: tuple[float, float] | None) -> list[Settled]:
     """Return settled states over the range; if none is given, also below while the body cools."""
     low, high = temperature_range(strobe, given)
-    start = strobe.start
-    asked = grid(low, high)
-    known = [state for state in scan(strobe, asked, start) if state]
-    if len(known) < len(asked):
-        lost = sorted(set(asked) - {state.temperature for state in known})
-        text = f"nothing settles at {len(lost)} of {len(asked)} temperatures, first {lost[0]:.6g} K"
-        warnings.warn(f"{text}; steady states there may be missed", SteadyWarning, stacklevel=3)
+    temperatures = grid(low, high)
+    known = [state for state in scan(strobe, temperatures, strobe.start) if state]
+    if len(known) < len(temperatures):
+        lost = sorted(set(temperatures) - {state.temperature for state in known})
+        text = f"nothing settles at {len(lost)} of {len(temperatures)} temperatures"
+        text += f", first {lost[0]:.6g} K; steady states there may be missed"
+        warnings.warn(text, SteadyWarning, stacklevel=3)
     if given is None and known and known[0].temperature == low and known[0].drift < 0:
         below = [2 * low - T for T in grid(low, 1.99 * low)[1:]]
         for state in scan(strobe, below, known[0].x):
@@ -187,7 +187,8 @@ def _known(strobe: Stroboscope, given: tuple[float, float] | None) -> list[Settl
     return known
 
 
-def _first(strobe: Stroboscope, known: list[Settled]) -> Settled:
+def _first_zero(strobe: Stroboscope, known: list[Settled]) -> Settled:
+    """Return the first zero from the start in the direction of the drift there."""
     T = strobe.temperature(strobe.start)
     if not known:
         what = f"nothing settles at {T:.6g} K or anywhere in the range"
@@ -201,17 +202,16 @@ def _first(strobe: Stroboscope, known: list[Settled]) -> Settled:
     if not side:
         last = known[-1 if heats else 0]
         where = between(at, last) if found else between(known[0], known[-1])
-        what = (
-            f"no periodic steady state: the body {'heats' if heats else 'cools'} {where} at t = 0"
-        )
+        change = "heats" if heats else "cools"
+        what = f"no periodic steady state: the body {change} {where} at t = 0"
         remedy = "let an ambient cool the body, or " if heats else ""
         remedy += "give a wider range as 'temperatures'"
         raise RunError(what, f"{strobe.where} at {strobe.frequency:g} Hz", remedy=remedy)
     return side[0] if heats else side[-1]
 
 
-def _state(strobe: Stroboscope, zero: Settled, rtol: float) -> SteadyState:
-    """Return the steady state at a zero of the heat balance, to the accuracy asked for."""
+def _steady_state(strobe: Stroboscope, zero: Settled, rtol: float) -> SteadyState:
+    """Return the steady state at a zero of the drift, to the accuracy `rtol`."""
     slope = jacobian(strobe, zero.x, zero.period.size)
     x, error = zero.x, np.inf
     while error > rtol:
@@ -221,7 +221,7 @@ def _state(strobe: Stroboscope, zero: Settled, rtol: float) -> SteadyState:
             what = f"rtol {rtol:g} asks for more than {MOST_STEPS} steps a period"
             raise RunError(what, strobe.where, remedy="give a larger rtol")
         x = fixed_point(strobe, x, slope)
-        # steps were halved, and are of order 2: the error left is a third of the change
+        # half the step at order 2: the error is a third of the change
         error = float(np.max(np.abs(x - before) / strobe.look(x).size)) / 3
     found = _described(strobe, x, slope)
     _refuse_residual(strobe, found, rtol)
@@ -229,7 +229,7 @@ def _state(strobe: Stroboscope, zero: Settled, rtol: float) -> SteadyState:
 
 
 def _refuse_residual(strobe: Stroboscope, found: SteadyState, rtol: float) -> None:
-    """Raise `RunError` if a period with adaptive steps does not repeat: fixed ones were too few."""
+    """Raise `RunError` if a period with adaptive steps does not repeat: the fixed were too long."""
     allowed = min(MOST_RESIDUAL, RESIDUAL * max(rtol, ORBIT_RTOL))
     if found.residual > allowed * max(1.0, found.multiplier):
         what = f"the state found at {found.temperature:.6g} K does not repeat: it is off by "
@@ -245,7 +245,7 @@ def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyS
     mean, coldest, hottest = over_period(T)
     size = strobe.look(x).size
     heats = [orbit[f"heat_{name}"] for name in {r.name: None for r in strobe.module.PROCESSES}]
-    fixed = strobe.conserved * size  # motions that leave alone what is conserved
+    fixed = strobe.conserved * size
     free = np.linalg.svd(fixed)[2][len(fixed) :] if len(fixed) else np.eye(len(slope))
     multiplier = float(np.max(np.abs(np.linalg.eigvals(free @ slope @ free.T)), initial=0.0))
     return SteadyState(

@@ -6,8 +6,8 @@ period later.
 
     x' = P(x; f)        a periodic steady state is a fixed point of P
 
-Every period has the same number of steps, so that P is smooth in x and f: with steps chosen by a
-tolerance it would have small jumps.  Both balances hold exactly.
+Every period has the same number of steps, so that P is smooth in x and f: with adaptive steps it
+would have small jumps.  Both balances hold exactly.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from piezo_sym.run.module import GeneratedModule, by_name, checked, held
 from piezo_sym.run.parameters import (
     LaneValue,
     entropy_row,
-    put_temperature,
     read_initial,
     read_parameters,
+    set_temperature,
 )
 from piezo_sym.run.system import DrivenModule
 
@@ -41,13 +41,13 @@ if TYPE_CHECKING:
     import xarray
 
 SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
-FLOOR = 1e-15  # so that no size is 0
-SPREAD = (-2.0, 2.0)  # powers of ten of the sizes of states that are drawn
-ENTROPY_SPREAD = 1e-2  # of the size of the entropy
-SPARE = 16  # states that are drawn beyond the least number
-RANK_TOLERANCE = 1e-12  # singular values below it are round-off
-SHARE_TOLERANCE = 1e-9  # a smaller share of a state in what is conserved is none
-CONSTANT = 1e-9  # of the sizes of states: what changes less over a period does not change
+FLOOR = 1e-15  # of sizes, which are not 0
+SPREAD = (-2.0, 2.0)  # powers of ten between which random states are spread, over their sizes
+ENTROPY_SPREAD = 1e-2  # of the entropy, over its size
+SPARE = 16  # random states beyond the least number
+RANK_TOLERANCE = 1e-12  # singular values below are round-off
+SHARE_TOLERANCE = 1e-9  # smaller coefficients of conserved quantities are round-off
+CONSTANT = 1e-9  # the largest change of a conserved quantity in a period, over the sizes of states
 
 
 @final
@@ -105,17 +105,14 @@ class Stroboscope:
         return np.asarray(self._periods(x[None], SAMPLES + 1)[0])
 
     def ends(self, x: FloatArray) -> FloatArray:
-        """Return the states (many, n) a period after those at t = 0, x (many, n)."""
+        """Return the states (many, n) one period after x (many, n)."""
         return np.asarray(self._periods(x, 2)[..., -1])
 
     def _periods(self, x: FloatArray, samples: int) -> FloatArray:
-        """Return the states (many, n, samples) of periods from x (many, n).
-
-        No Dataset is built, for speed.
-        """
+        """Return the states (many, n, samples) of periods from x (many, n), without Datasets."""
         system, step = self._system, FixedStep(self.duration / self.steps)
-        for one in x:
-            check_start(system, one, np.inf)  # searches may look beyond the limits of stops
+        for start in x:
+            check_start(system, start, np.inf)  # searches may go beyond the limits of stops
         times = np.linspace(0.0, self.duration, samples)
         runs = collocate([system] * len(x), engine_of(self.module), x, times, step)
         return np.array([runs.trajectory(k).states for k in range(len(x))])
@@ -166,7 +163,7 @@ class Stroboscope:
 
     @cached_property
     def conserved(self) -> FloatArray:
-        """Linear functions (k, n) of the state that no motion changes; none where that is in doubt.
+        """Linear functions (k, n) of the state that are conserved; none in doubtful cases.
 
         They are zero on the rates at random states of the domain, and constant over a period.
         """
@@ -184,15 +181,14 @@ class Stroboscope:
         rows = np.maximum(np.abs(rates).max(axis=1), FLOOR)[:, None]
         left, sizes, _ = np.linalg.svd(rates / rows, full_matrices=False)
         shares = np.where(np.abs(left) < SHARE_TOLERANCE, 0.0, left)[:, sizes < RANK_TOLERANCE].T
-        found = shares / rows.T / size
-        values = found @ states
-        kept = np.ptp(values, axis=1) <= CONSTANT * (np.abs(found) @ size)
-        return np.asarray(found[kept])
+        functions = shares / rows.T / size
+        kept = np.ptp(functions @ states, axis=1) <= CONSTANT * (np.abs(functions) @ size)
+        return np.asarray(functions[kept])
 
     def _random_rates(self, size: FloatArray) -> FloatArray:
-        """Return rates (n, many) at states from near to far, so that no law rests at all of them.
+        """Return rates (n, many) at states so widely spread that no law is zero at all of them.
 
-        The body stays about as warm as it is: its temperature may be an exponential.
+        The entropy of the body is not: its temperature may be an exponential of it.
         """
         rng, many = np.random.default_rng(0), 4 * (size.size + SPARE)
         spread = 10 ** rng.uniform(*SPREAD, many) * np.ones((size.size, 1))
@@ -213,10 +209,10 @@ class Stroboscope:
         return entropy_row(self.module, self.values, x, 0)
 
     def at_temperature(self, x: FloatArray, T: float) -> FloatArray:
-        """Return the state x (n,) with the body's entropy changed so that its temperature is T."""
-        found = x.copy()
-        put_temperature(self.module, self.values, found, 0, T, self.where)
-        return found
+        """Return the state x (n,) with the entropy at which the body's temperature is T."""
+        state = x.copy()
+        set_temperature(self.module, self.values, state, 0, T, self.where)
+        return state
 
 
 def stroboscope(
@@ -227,9 +223,9 @@ def stroboscope(
     initial: Mapping[str, LaneValue] | None,
     steps: int,
 ) -> Stroboscope:
-    """Return a module's stroboscope, checked by a run of one period.
+    """Return a module's stroboscope, with `steps` per period doubled until they resolve the inputs.
 
-    Its steps per period are doubled until they resolve the inputs.
+    A run of one period checks its start.
     """
     bodies = [record.name for record in checked(module).BODIES]
     if len(bodies) != 1:
@@ -241,5 +237,5 @@ def stroboscope(
     steps = steps_needed(inputs, (record.name for record in module.INPUTS), steps)
     known_keys(initial, [record.name for record in module.STATES], "periodic_steady_state.initial")
     strobe = Stroboscope(module, inputs_at, frequency, parameters or {}, initial or {}, steps)
-    strobe.run(strobe.start, times=2, step=strobe.duration / steps)  # raises what a run says
+    strobe.run(strobe.start, times=2, step=strobe.duration / steps)
     return strobe

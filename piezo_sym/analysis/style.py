@@ -4,19 +4,17 @@ Input: sizes, labels, data.  Output: Matplotlib figures without any global state
 PNG to look at, an SVG to print, a CSV of the data; the same bytes in every run.
 """
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from piezo_sym.files import write_bytes
 from piezo_sym.run.samples import header_of
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 #: Okabe and Ito's colours, which colour-blind readers can distinguish; dashes, for print in grey.
 COLOURS = ("#0072B2", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#56B4E9", "#000000", "#F0E442")
@@ -27,8 +25,6 @@ LABEL, SMALL = 8, 7  # points
 
 def column_figure(height: float = 2.7) -> tuple[Figure, Axes]:
     """Return a figure one column wide, and its axes; `height` in inches."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(COLUMN, height), dpi=300, layout="constrained")
     axes = figure.add_subplot()
     dress(axes)
@@ -59,7 +55,7 @@ def draw_lines(
 
 
 def name_axes(axes: Axes, x: str, y: str) -> None:
-    """Write what the axes show, with units."""
+    """Label the axes, with units."""
     axes.set_xlabel(x, fontsize=LABEL)
     axes.set_ylabel(y, fontsize=LABEL)
 
@@ -84,8 +80,6 @@ def _content(figure: Figure, data: xarray.Dataset, ending: str) -> bytes:
         units = {name: data[name].attrs.get("units", "1") for name in frame.columns}
         frame.columns = [header_of(name, unit) for name, unit in units.items()]
         return bytes(frame.to_csv(index=False, float_format="%.10g").encode())
-    from matplotlib import rc_context
-
     stream = io.BytesIO()
     metadata = {"Date": None, "Creator": None} if ending == ".svg" else {"Software": None}
     with rc_context({"svg.hashsalt": "piezo_sym"}):

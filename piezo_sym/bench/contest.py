@@ -1,10 +1,8 @@
-"""Comparisons: pairs of calls, timed in turns so that all are exposed to the same noise.
+"""Comparisons: pairs of calls, timed in turns so that noise affects all of them equally.
 
 Input: pairs of contestants.  Output: `Comparison` rows, with medians, quartiles, ratios of times
-measured in the same round, and the errors of results; and their cells as text.
+from the same round, and the errors of results; and their cells as text.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,9 +11,9 @@ from typing import TypeAlias, final
 
 import numpy as np
 
-#: Least duration of a measurement [s]: shorter calls are repeated within it.
+#: Least duration of a measurement [s], in which short calls are repeated.
 SHORTEST = 0.004
-#: Total time [s] after which a call is not measured again.
+#: Total time of a call [s] after which it is not measured again.
 PATIENCE = 20.0
 
 
@@ -49,16 +47,16 @@ def interleaved(
 ) -> tuple[Times, ...]:
     """Return the times of calls, measured in turns: every call once in each round.
 
-    A call that has taken `patience` seconds in all is measured no more.
+    A call that has taken `patience` seconds in all is not measured again.
     """
     first = [_seconds(call, 1) for call in calls]
     numbers = [_number(call, once) for call, once in zip(calls, first, strict=True)]
-    found = [[once] if 2 * once > patience else [] for once in first]
+    measured = [[once] if 2 * once > patience else [] for once in first]
     for _ in range(rounds):
-        for call, number, times in zip(calls, numbers, found, strict=True):
+        for call, number, times in zip(calls, numbers, measured, strict=True):
             if not times or (sum(times) + times[-1]) * number <= patience:
                 times.append(_seconds(call, number))
-    return tuple(map(tuple, found))
+    return tuple(map(tuple, measured))
 
 
 def _seconds(call: Callable[[], object], number: int) -> float:
@@ -69,9 +67,9 @@ def _seconds(call: Callable[[], object], number: int) -> float:
 
 
 def _number(call: Callable[[], object], once: float) -> int:
-    """Return the calls per measurement; a short one is timed again, for the first may be slow."""
-    again = _seconds(call, 1) if once < SHORTEST else once
-    return max(1, int(np.ceil(SHORTEST / max(again, 1e-9))))
+    """Return the calls per measurement; short ones are timed again, as the first may be slow."""
+    seconds = _seconds(call, 1) if once < SHORTEST else once
+    return max(1, int(np.ceil(SHORTEST / max(seconds, 1e-9))))
 
 
 COLUMNS = ("group", "compared with", "time", "error", "ours", "time", "error", "ratio", "quartiles")
@@ -86,14 +84,14 @@ class Contestant:
     name: str
     call: Callable[[], object]
     per: int = 1
-    error: float | None = None  # of a result, where there is a measure
+    error: float | None = None  # of a result, None if there is no measure
     note: str = ""  # tolerance, time of compilation
 
 
 @final
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """A contestant from elsewhere, if there is one, and one of this package."""
+    """A contestant of this package, and another one or None."""
 
     other: Contestant | None
     ours: Contestant
@@ -102,7 +100,7 @@ class Pair:
 @final
 @dataclass(frozen=True)
 class Comparison:
-    """One benchmark: this package against something else that does the same, or nothing."""
+    """A row: a contestant of this package compared with another, or alone."""
 
     group: str
     other: str
@@ -110,7 +108,7 @@ class Comparison:
     other_time: Spread | None  # seconds per result
     ours_time: Spread
     ratio: Spread | None  # of times measured in turns: above 1, ours is faster
-    other_error: float | None = None  # in units of the scale that `measure` names
+    other_error: float | None = None  # as defined by `measure`
     ours_error: float | None = None
     measure: str = ""
     note: str = ""
@@ -131,9 +129,9 @@ def compared(
     group: str, pairs: Sequence[Pair], rounds: int, measure: str = ""
 ) -> tuple[Comparison, ...]:
     """Return a row for each pair, every contestant timed in every round."""
-    everyone = dict.fromkeys(c for pair in pairs for c in (pair.other, pair.ours) if c)
-    found = zip(everyone, interleaved([c.call for c in everyone], rounds), strict=True)
-    times = {c: tuple(seconds / c.per for seconds in one) for c, one in found}
+    contestants = dict.fromkeys(c for pair in pairs for c in (pair.other, pair.ours) if c)
+    timed = zip(contestants, interleaved([c.call for c in contestants], rounds), strict=True)
+    times = {c: tuple(seconds / c.per for seconds in measured) for c, measured in timed}
     return tuple(_row(group, pair, times, measure) for pair in pairs)
 
 
@@ -141,12 +139,18 @@ def _row(group: str, pair: Pair, times: dict[Contestant, Times], measure: str) -
     other, ours = pair.other, pair.ours
     sides = (("its", other), ("our", ours))
     note = "; ".join(f"{whose} {side.note}" for whose, side in sides if side and side.note)
-    own = spread(times[ours])
-    if other is None:
-        return Comparison(group, "", ours.name, None, own, None, None, ours.error, measure, note)
-    found = group, other.name, ours.name, spread(times[other]), own
-    rounds = ratio(times[other], times[ours])
-    return Comparison(*found, rounds, other.error, ours.error, measure, note)
+    return Comparison(
+        group,
+        other=other.name if other else "",
+        ours=ours.name,
+        other_time=spread(times[other]) if other else None,
+        ours_time=spread(times[ours]),
+        ratio=ratio(times[other], times[ours]) if other else None,
+        other_error=other.error if other else None,
+        ours_error=ours.error,
+        measure=measure,
+        note=note,
+    )
 
 
 def _duration(spread: Spread | None) -> str:

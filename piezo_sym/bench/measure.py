@@ -1,20 +1,18 @@
-"""The groups of `piezo-sym bench`: rates of one state and of many, and whole runs at equal error.
+"""The groups of `piezo-sym bench`: rates of one state and of many, and runs at equal error.
 
-Input: a `Model` and its inputs.  Output: a `BenchReport`.  The error of a rate is its distance from
-SymPy in 30 digits, over the largest value of its row.  That of a run is its distance at the end
-from a run with a tight tolerance, which a second solver confirms, over the largest magnitude of
+Input: a `Model` and its inputs.  Output: a `BenchReport`.  The error of a rate is its difference
+from SymPy in 30 digits, over the largest value of its row.  That of a run is its difference at the
+end from a run with a tight tolerance, confirmed by a second solver, over the largest magnitude of
 each state.  All calls are timed in one process, in turns, so that the ratios hold on a busy
 machine, too.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
 import sympy as sp
@@ -27,14 +25,12 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import InputValue
-
-if TYPE_CHECKING:
-    from piezo_sym.spec.model import Model
+from piezo_sym.spec.model import Model
 
 MANY, CHECKED, DIGITS = 10_000, 8, 30
-#: The error that runs are tuned to, the tolerances that are tried, and for how long [s].
+#: The error to which runs are tuned, the tolerances that are tried, and for how long [s].
 TARGET, LADDER, PATIENCE = 1e-6, tuple(float(f"1e-{n}") for n in range(2, 13)), 60.0
-#: A reference and the run that confirms it; SCIPY where the solver finds no step small enough.
+#: A reference and the run that confirms it; SCIPY where the discrete gradient fails.
 OWN, SCIPY = ((METHOD, 1e-9), ("LSODA", 1e-10)), (("LSODA", 1e-12), ("LSODA", 1e-10))
 MEASURE = "of a rate, against 30 digits, in units of the row's largest"
 
@@ -42,7 +38,7 @@ MEASURE = "of a rate, against 30 digits, in units of the row's largest"
 @final
 @dataclass(frozen=True)
 class BenchReport:
-    """The rows, and the reason for each comparison that was left out."""
+    """The comparisons, and the reason for each that was left out."""
 
     model: str
     rows: tuple[Comparison, ...] = ()
@@ -69,11 +65,11 @@ def bench(
 
     Parameters
     ----------
-    inputs : constants and sines; the spec's defaults where nothing is said, but 100 V at 100 Hz
-        for the shipped actuator.
+    inputs : constants and sines; those left out have the spec's defaults, but the shipped actuator
+        100 V at 100 Hz.
     duration : of a run [s].
     only : names of groups; all when empty.
-    rounds : how often every call is timed.
+    rounds : the number of times that every call is timed.
     say : called with the name of each group before it is measured.
     """
     names = tuple(dict.fromkeys(only)) or tuple(GROUPS)
@@ -116,7 +112,7 @@ def _rates(
     rounds: int,
     left_out: list[str],
 ) -> tuple[Comparison, ...]:
-    """Return the rows of rates of x (n,) or (n, columns): ours against the usual ones."""
+    """Return the rows for rates of x (n,) or (n, columns), compared with the usual functions."""
     u = np.array([float(signal(INSTANT)) for signal in problem.system.inputs.signals])
     ours: dict[str, Any] = {"generated NumPy": problem.module.rhs}
     try:
@@ -125,28 +121,28 @@ def _rates(
         left_out.append(f"{group}, generated C: {error}")
     columns = x.reshape(len(x), -1)
     exact = np.array([_precise(problem, column) for column in columns.T[:CHECKED]]).T
-    every = problem.module.rhs(columns, u, problem.system.parameters)
-    size = np.max(np.abs(every), axis=1, keepdims=True)
+    p = problem.system.parameters
+    size = np.max(np.abs(problem.module.rhs(columns, u, p)), axis=1, keepdims=True)
 
     def contestant(name: str, call: Callable[[], object]) -> Contestant:
-        found = np.asarray(call()).reshape(columns.shape)[:, :CHECKED]
-        error = float(np.max(np.abs(found - exact) / np.where(size > 0, size, 1.0)))
+        rates = np.asarray(call()).reshape(columns.shape)[:, :CHECKED]
+        error = float(np.max(np.abs(rates - exact) / np.where(size > 0, size, 1.0)))
         return Contestant(name, call, columns.shape[1], error)
 
-    p = problem.system.parameters
     mine = [contestant(name, partial(rhs, x, u, p)) for name, rhs in ours.items()]
     others = [contestant(name, partial(rates, x)) for name, rates in usual.items()]
     return compared(group, [Pair(o, m) for o in others for m in mine], rounds, MEASURE)
 
 
 def _precise(problem: Problem, x: FloatArray) -> list[float]:
+    """Return the rates of x (n,), computed by SymPy in `DIGITS` digits."""
     values = zip(problem.states, x, strict=True)
     known = {state: sp.Float(float(value), DIGITS) for state, value in values}
     return [float(rate.xreplace(known).evalf(DIGITS)) for rate in problem.at_instant]
 
 
 def _run(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Comparison, ...]:
-    """Return the rows of whole runs, each at the loosest tolerance that reaches `TARGET`."""
+    """Return the rows for runs, each at the loosest tolerance that reaches `TARGET`."""
     problem, exact, measure = reference_of(problem)
     usual = "on lambdified SymPy"
     solvers: dict[str, Callable[[float], FloatArray]] = {
@@ -156,16 +152,16 @@ def _run(problem: Problem, rounds: int, left_out: list[str]) -> tuple[Comparison
         f"LSODA {usual}, math and cse": solver("LSODA", "math", True, problem),
     }
     error = partial(problem.error, exact=exact)
-    found = [tuned(name, solve, error) for name, solve in solvers.items()]
-    left_out += [f"run, {reason}" for reason in found if isinstance(reason, str)]
-    ours, *others = (one for one in found if isinstance(one, Contestant))
-    if isinstance(found[0], str):
+    ours, *others = (tuned(name, solve, error) for name, solve in solvers.items())
+    left_out += [f"run, {reason}" for reason in (ours, *others) if isinstance(reason, str)]
+    if isinstance(ours, str):
         return ()
-    return compared("run", [Pair(other, ours) for other in others], rounds, measure)
+    pairs = [Pair(other, ours) for other in others if isinstance(other, Contestant)]
+    return compared("run", pairs, rounds, measure)
 
 
 def reference_of(problem: Problem) -> tuple[Problem, FloatArray, str]:
-    """Return a problem with its scale, its state (n,) at the end, and how far that is known."""
+    """Return a problem with its scale, its state (n,) at the end, and the accuracy of that."""
     how = OWN
     try:
         path = _path(problem, how[0], 201)
@@ -173,42 +169,40 @@ def reference_of(problem: Problem) -> tuple[Problem, FloatArray, str]:
         how = SCIPY
         path = _path(problem, how[0], 201)
     scaled = replace(problem, scale=problem.system.scale(np.max(np.abs(path), axis=1)))
-    good = scaled.error(_path(problem, how[1], [problem.duration])[:, -1], path[:, -1])
+    error = scaled.error(_path(problem, how[1], [problem.duration])[:, -1], path[:, -1])
     (method, rtol), (other, looser) = how
     line = f"at the end, against {method} at rtol {rtol:g}, "
-    return scaled, path[:, -1], f"{line}good to {good:.0e} by {other} at {looser:g}"
+    return scaled, path[:, -1], f"{line}good to {error:.0e} by {other} at {looser:g}"
 
 
 def tuned(
-    name: str,
-    solve: Callable[[float], FloatArray],
-    error: Callable[[FloatArray], float],
+    name: str, solve: Callable[[float], FloatArray], error: Callable[[FloatArray], float]
 ) -> Contestant | str:
-    """Return a solver at the loosest tolerance that reaches the target, as the next tighter does.
+    """Return a solver at the loosest tolerance with which, and with the next, it reaches `TARGET`.
 
-    A solver that fails has not reached it.  Where there is no such tolerance, return the reason.
+    Where there is no such tolerance, return the reason. A solver that fails has not reached it.
     """
-    start, good = perf_counter(), None
+    start, best = perf_counter(), None
     for rtol in LADDER:
-        found = np.inf
+        size = np.inf
         with suppress(ArithmeticError, RuntimeError, ValueError, PiezoError):
-            found = error(solve(rtol))
-        if found <= TARGET and good:
-            return good
+            size = error(solve(rtol))
+        if size <= TARGET and best:
+            return best
         call = partial(solve, rtol)
-        good = Contestant(name, call, 1, found, f"rtol {rtol:g}") if found <= TARGET else None
+        best = Contestant(name, call, 1, size, f"rtol {rtol:g}") if size <= TARGET else None
         if perf_counter() - start > PATIENCE:
             break
-    return good or f"{name}: does not reach an error of {TARGET:g} in {PATIENCE:g} s"
+    return best or f"{name}: does not reach an error of {TARGET:g} in {PATIENCE:g} s"
 
 
 def _path(problem: Problem, how: tuple[str, float], times: Any) -> FloatArray:
     """Return the states (n, nt) of a run by a method with an rtol."""
     given: Any = {"inputs": problem.inputs, "parameters": problem.counts, "times": times}
     method, rtol = how
-    found = simulate(problem.module, duration=problem.duration, method=method, rtol=rtol, **given)
+    run = simulate(problem.module, duration=problem.duration, method=method, rtol=rtol, **given)
     names = [record.name for record in problem.module.STATES]
-    return np.concatenate([np.atleast_2d(found[name].values.T) for name in names])
+    return np.concatenate([np.atleast_2d(run[name].values.T) for name in names])
 
 
 GROUPS: Mapping[str, Callable[[Problem, int, list[str]], Sequence[Comparison]]] = {

@@ -1,20 +1,18 @@
-"""A model with its inputs as every competitor gets it: explicit rates in SymPy, and lambdified.
+"""A model with its inputs as an initial value problem, and its usual solution with SciPy.
 
 Input: a `Model` and its inputs.  Output: a `Problem`
 
     dx/dt = f(t, x),  x(0) given
 
-with banks expanded into their lanes, and the values of parameters and inputs substituted; and the
-usual way to solve it without this package: lambdified, integrated by SciPy's solve_ivp.
+in SymPy, with banks expanded into their lanes, and the values of parameters and inputs substituted;
+and its solution without this package: lambdified, integrated by SciPy's solve_ivp.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 from math import pi
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
 import sympy as sp
@@ -30,9 +28,7 @@ from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.signals import Constant, Signal, Sine
 from piezo_sym.run.system import DrivenModule
 from piezo_sym.spec.load import load
-
-if TYPE_CHECKING:
-    from piezo_sym.spec.model import Model
+from piezo_sym.spec.model import Model
 
 TIME = sp.Symbol("t", real=True)
 #: Time [s] at which the rates of many states are compared.
@@ -50,9 +46,9 @@ class Problem:
     module: GeneratedModule
     inputs: Mapping[str, InputValue]
     duration: float  # [s]
-    counts: Mapping[str, int]  # sizes of banks other than the spec's, as parameters
+    counts: Mapping[str, int]  # sizes of banks that differ from the spec, as parameters
     states: tuple[sp.Symbol, ...]
-    rates: tuple[sp.Expr, ...]  # dx/dt, of `TIME` and x alone
+    rates: tuple[sp.Expr, ...]  # dx/dt as functions of `TIME` and x
     start: FloatArray  # x(0) (n,)
     scale: FloatArray  # the unit of each state's error (n,)
 
@@ -79,7 +75,7 @@ def problem_of(
     duration: float,
     sizes: Mapping[str, int] | None = None,
 ) -> Problem:
-    """Return a model as a problem, its scale 1; inputs and `sizes` of banks as in the spec."""
+    """Return a model as a problem with scale 1; `sizes` are those of banks, else as in the spec."""
     shipped = not inputs and model.sha256 == load(SHIPPED).sha256
     given: Mapping[str, InputValue] = DRIVEN if shipped else inputs
     counts = {f"{bank}_count": size for bank, size in (sizes or {}).items()}
@@ -123,22 +119,22 @@ def as_expression(signal: Signal, name: str) -> sp.Expr:
 def field(problem: Problem, modules: str = "numpy", cse: bool = False) -> Callable[..., Any]:
     """Return dx/dt as a function of t and x, lambdified."""
     arguments, rates = [TIME, list(problem.states)], list(problem.rates)
-    made: Callable[..., Any] = sp.lambdify(arguments, rates, modules, cse=cse)
-    return made
+    function: Callable[..., Any] = sp.lambdify(arguments, rates, modules, cse=cse)
+    return function
 
 
 def solver(method: str, modules: str, cse: bool, problem: Problem) -> Callable[[float], FloatArray]:
-    """Return solve_ivp over the whole run, its error bound rtol (|x| + scale)."""
+    """Return solve_ivp over the run as a function of rtol, its error bound rtol (|x| + scale)."""
     return partial(integrated, field(problem, modules, cse), problem, method)
 
 
 def integrated(rates: Callable[..., Any], problem: Problem, method: Any, rtol: float) -> FloatArray:
-    """Return the state at the end, by solve_ivp; raise `RuntimeError` if it gives up."""
+    """Return the state at the end, by solve_ivp; raise `RuntimeError` if it fails."""
     end, how = problem.duration, {"method": method, "rtol": rtol, "atol": rtol * problem.scale}
-    found = solve_ivp(rates, (0.0, end), problem.start, t_eval=(end,), **how)
-    if not found.success:
-        raise RuntimeError(found.message)
-    state: FloatArray = found.y[:, -1]
+    solution = solve_ivp(rates, (0.0, end), problem.start, t_eval=(end,), **how)
+    if not solution.success:
+        raise RuntimeError(solution.message)
+    state: FloatArray = solution.y[:, -1]
     return state
 
 
@@ -146,11 +142,11 @@ def batch(problem: Problem) -> Callable[[FloatArray], FloatArray]:
     """Return the rates of many states at once, as an array (n, columns)."""
     rates = sp.lambdify([list(problem.states)], list(problem.at_instant), "numpy")
 
-    def many(x: FloatArray) -> FloatArray:
+    def rates_of(x: FloatArray) -> FloatArray:
         out = np.empty_like(x)
         with np.errstate(all="ignore"):  # select computes every branch
             for row, rate in zip(out, rates(x), strict=True):
                 row[:] = rate
         return out
 
-    return many
+    return rates_of

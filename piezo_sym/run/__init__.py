@@ -1,7 +1,7 @@
 """Run generated modules: signals in, `simulate`, an `xarray.Dataset` out.
 
-Input: a generated module and what a user says about a run.  Output: states, outputs, temperatures,
-and the ledger of energy and entropy over time.  Neither SymPy nor a spec is needed to run.
+Input: a generated module and the arguments of a run.  Output: states, outputs, temperatures, and
+the ledger of energy and entropy over time.  Neither SymPy nor a spec is needed to run.
 """
 
 from piezo_sym.run import signals

@@ -1,7 +1,7 @@
-"""Numbers a user gave, checked.
+"""Checks of numbers from a user.
 
-Input: anything, and the place it was given.  Output: a float, or a vector of floats, all finite;
-or a `UsageError` that names the place.
+Input: any object, and the argument it was given for.  Output: a finite float or a vector of them;
+or a `UsageError` that names the argument.
 """
 
 import re
@@ -18,9 +18,9 @@ from piezo_sym.errors import PiezoError, UsageError, nearest, quote
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
-#: A duration, a temperature or a frequency below it is as good as 0.
+#: The smallest duration, temperature or frequency: fractions of a smaller one underflow.
 LEAST = 1e-100
-#: Of lanes, samples or steps between them: what is stored of more fits into no memory.
+#: The most lanes or samples: the results of more fit into no memory.
 MOST = 100_000_000
 
 
@@ -44,7 +44,7 @@ def number(value: object, where: str) -> float:
 
 
 def positive(value: object, where: str) -> float:
-    """Return `value` as a finite float above 0, whose parts can be told from 0, too."""
+    """Return `value` as a finite float >= `LEAST`; raise `UsageError` otherwise."""
     result = number(value, where)
     if result <= 0:
         what = f"{quote(value)} is not positive"
@@ -54,7 +54,7 @@ def positive(value: object, where: str) -> float:
     return result
 
 
-def whole(value: object, where: str, least: int, most: int = MOST) -> int:
+def integer(value: object, where: str, least: int, most: int = MOST) -> int:
     """Return `value` as an int from `least` to `most`; raise `UsageError` otherwise."""
     if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
         what = f"{quote(value)} is not allowed"
@@ -84,8 +84,8 @@ def vector(value: object, where: str) -> FloatArray:
     return raw.astype(np.float64)
 
 
-def span_of(value: object, where: str, unit: str) -> tuple[float, float]:
-    """Return the least and the greatest of a range above 0; raise `UsageError` otherwise."""
+def positive_range(value: object, where: str, unit: str) -> tuple[float, float]:
+    """Return a range 0 < least < greatest; raise `UsageError` otherwise."""
     ends = vector(value, where) if is_vector(value) else np.zeros(0)
     if ends.size != 2 or not 0 < ends[0] < ends[1]:
         expected = f"two numbers above 0 in {unit}, the least and the greatest"
@@ -106,9 +106,9 @@ def increasing(times: FloatArray, where: str) -> FloatArray:
 def known_keys(
     given: object, known: Iterable[str], where: str, others: Mapping[str, str] | None = None
 ) -> dict[str, object]:
-    """Return a user's mapping of names as a dict, or name the first key that nothing answers to.
+    """Return a user's mapping as a dict; raise `UsageError` at the first key not in `known`.
 
-    `others` are names that belong elsewhere, and where.
+    `others` maps names that belong to another argument to that argument.
     """
     if given is None:
         return {}
@@ -127,7 +127,7 @@ def known_keys(
 
 @contextmanager
 def calling(function: str) -> Iterator[None]:
-    """Let errors of shared checks name the function that was called; also a decorator of it."""
+    """Make errors of shared checks name `function`, which the user called; also a decorator."""
     try:
         yield
     except PiezoError as error:

@@ -4,8 +4,6 @@ Input: systems that differ in parameters, their engine, their states at t = 0, t
 a tolerance or a `FixedStep`.  Output: `Runs`, whose states are those of their ledgers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -26,31 +24,31 @@ from piezo_sym.run.module import UNPROVED, GeneratedModule, row_count, verdict_o
 from piezo_sym.run.system import DrivenModule
 
 METHOD = "discrete_gradient"
-#: Told the time that runs have reached, now and then; what it raises ends them.
+#: Called with the time [s] that runs have reached, every few milliseconds; an exception ends them.
 Watch: TypeAlias = Callable[[float], object]
-#: The first step, the longest, and the longest of the survey of scales, in parts of the run.
+#: The first step, the longest step, and the longest of the survey of scales, over the duration.
 FIRST, LONGEST, SURVEYED = 1e-5, 0.25, 1 / 64
-#: Numbers of state that are stepped between two calls of `watch`: some milliseconds.
+#: States times steps between two calls of `watch`: some milliseconds.
 CHUNK = 50_000
-#: Runs of more states have vectors for the lanes of their banks.
+#: In runs of more states, vectors hold lanes of banks instead of runs.
 MOST_STATES = 32
-#: From this rtol on: the cheapest number of stages, and the estimated error allowed in a step, as a
-#: part of rtol, with which the largest error of a run is about rtol.
-CHOICE = ((1e-5, 4, 0.3), (0.0, 5, 0.75))
+#: Least rtol; the cheapest number of stages; the estimated error allowed in a step, over rtol, with
+#: which the largest error of a run is about rtol.
+STAGES = ((1e-5, 4, 0.3), (0.0, 5, 0.75))
 #: Below this tolerance steps end at kinks, however many there are.
 LEAST_OVER = 1e-6
 #: A run of more steps would take days, and steps below round-off.
 MOST_STEPS = 1e12
 #: Twice the stages that a step can have.
 ORDERS = (2, 4, 6, 8, 10)
-#: A step that would leave less than this part of itself before a sample or a break ends there.
+#: A step that ends closer than this, over its length, to a sample or a break ends there.
 ROUNDING = 1e-9
 
 
 @final
 @dataclass(frozen=True)
 class FixedStep:
-    """The longest step of a run [s], and by which power of it errors fall."""
+    """A fixed step: its greatest length [s], and the order of the error in it."""
 
     length: float
     order: int = 2
@@ -59,26 +57,26 @@ class FixedStep:
 @final
 @dataclass(frozen=True)
 class Runs:
-    """Runs of some systems, and why those that did not come through stopped."""
+    """The results of runs, and the error of each that stopped early."""
 
     systems: Sequence[DrivenModule]  # with equal inputs and sizes
-    start: FloatArray  # their states (runs, n) at t = 0
+    start: FloatArray  # states (runs, n) at t = 0
     times: FloatArray  # of samples (nt,)
     states: FloatArray  # (runs, nt, n)
-    sums: FloatArray  # (runs, nt, rows), in the order of `DrivenModule.rates`
-    work: NDArray[Any]  # of each run its steps, Newton's iterations, steps refused (runs, 3)
+    sums: FloatArray  # integrals (runs, nt, rows), in the order of `DrivenModule.rates`
+    work: NDArray[Any]  # steps, Newton iterations and refused steps of each run (runs, 3)
     errors: Sequence[RunError | None]  # of each run
-    numerical: bool  # whether sums end with heat and entropy that dissipative starts produce
+    numerical: bool  # whether sums end with heat and entropy produced by dissipative starts
 
     def trajectory(self, k: int) -> Trajectory:
-        """Return run k; raise its error, which holds what was reached, if it stopped."""
+        """Return run k; raise its error, with the samples it reached, if it stopped."""
         if error := self.errors[k]:
             error.reached = self.so_far(k).until(self.times)
             raise error
         return self.so_far(k)
 
     def so_far(self, k: int) -> Trajectory:
-        """Return run k, whose samples are nan beyond what it reached."""
+        """Return run k; samples that it has not reached are nan."""
         sums = self.sums[k].T
         steps, evaluations, halvings = (int(number) for number in self.work[k])
         return Trajectory(
@@ -105,48 +103,50 @@ def collocate(
     starts: bool = False,
     side_by_side: bool = True,
 ) -> Runs:
-    """Return runs from their states x (runs, n) at t = 0 through the sample times (nt,).
+    """Return runs from the states x (runs, n) at t = 0 to the last sample time (nt,).
 
-    With a tolerance, a rough run first shows how large each state becomes; errors are measured by
-    that. Fixed steps end at samples and at breaks of inputs.
+    With a tolerance, a coarse run first finds the scale of each state, in which errors are
+    measured. Fixed steps end at samples and at breaks of inputs.
 
-    Systems have equal inputs and sizes. `stages` of a step with a tolerance are those that are
-    cheapest for it, when left out; `starts`: the first fixed step after a jump of the inputs is
-    dissipative; `side_by_side`: runs of few states lie in the lanes of vectors.
+    Parameters
+    ----------
+    systems : with equal inputs and sizes.
+    stages : of a step with a tolerance; the cheapest number when left out.
+    starts : whether the first fixed step after a jump of the inputs is dissipative.
+    side_by_side : whether runs of few states share vectors.
     """
     first = systems[0]
     how = stepping(first, accuracy, stages)
-    lying, extra = layout_of(*x.shape, side_by_side=side_by_side), 2 if starts else 0
-    batch = Batch(
-        engine, [one.parameters for one in systems], x, first.inputs, times, how, lying, extra=extra
-    )
+    layout, extra = layout_of(*x.shape, side_by_side=side_by_side), 2 if starts else 0
+    parameters = [system.parameters for system in systems]
+    batch = Batch(engine, parameters, x, first.inputs, times, how, layout, extra=extra)
     try:
         if starts:
-            go_dissipatively(batch, how, first.inputs, times, watch)
+            advance_from_jumps(batch, how, first.inputs, times, watch)
         elif not how.fixed:
             batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
             batch.largest[:] = first.scale(batch.largest)
-        through(batch, watch)
+        advance(batch, watch)
     except KeyboardInterrupt as stopped:
-        vars(stopped)["reached"] = results(batch, systems, x, times).so_far(0).until(times)
+        vars(stopped)["reached"] = results_of(batch, systems, x, times).so_far(0).until(times)
         raise
-    return results(batch, systems, x, times)
+    return results_of(batch, systems, x, times)
 
 
-def go_dissipatively(
+def advance_from_jumps(
     batch: Batch, how: Stepping, inputs: Inputs, times: FloatArray, watch: Watch | None
 ) -> None:
-    """Take runs up to the last jump of the inputs, and begin a dissipative step after each jump."""
+    """Advance runs to the last jump of the inputs, with a dissipative step after each jump."""
     for segment in inputs.segments:
         if segment.start in inputs.jumps:
             batch.go_on(how, segment.start)
-            through(batch, watch)
-            start(batch, how, *first_step(segment, times, how.fixed))
+            advance(batch, watch)
+            dissipative_step(batch, how, *first_step(segment, times, how.fixed))
     batch.go_on(how, inputs.end)
 
 
-def through(batch: Batch, watch: Watch | None = None) -> None:
-    """Take runs as far as they go; `watch` is told the time reached, now and then."""
+def advance(batch: Batch, watch: Watch | None = None) -> None:
+    """Advance runs to where they stop, and tell `watch` the mean time they have reached."""
     more = True
     while more:
         more = batch.go(max(1, CHUNK // batch.x.shape[1]))
@@ -154,21 +154,21 @@ def through(batch: Batch, watch: Watch | None = None) -> None:
             watch(float(np.mean(batch.records["t"])))
 
 
-def results(
+def results_of(
     batch: Batch, systems: Sequence[DrivenModule], x: FloatArray, times: FloatArray
 ) -> Runs:
-    """Return the results of runs that began at x (runs, n)."""
+    """Return the results of runs from x (runs, n)."""
     records = batch.records
     work = np.stack([records[n] for n in ("steps", "iterations", "rejected")], axis=1)
     errors: list[RunError | None] = [None] * len(x)
     for k in np.flatnonzero(records["failed"]).tolist():
-        errors[k] = _stuck(systems[k], float(records["t"][k]), batch.x[k])
+        errors[k] = _stuck_error(systems[k], float(records["t"][k]), batch.x[k])
     arrays = batch.states, batch.sums, work
     return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.extra > 0)
 
 
-def _stuck(system: DrivenModule, t: float, x: FloatArray) -> RunError:
-    """Return the error of a run that cannot go on: it says when and where."""
+def _stuck_error(system: DrivenModule, t: float, x: FloatArray) -> RunError:
+    """Return the error of a run that stopped at t [s] in the state x (n,)."""
     why = "no step stays in the domain, or a law that jumps holds the state there"
     remedy = "look at inputs and state; allow more room in [domain]; tanh(v/w) for sign(v)"
     if verdict_of(system.module).startswith(UNPROVED):
@@ -182,7 +182,7 @@ def _stuck(system: DrivenModule, t: float, x: FloatArray) -> RunError:
 
 
 def stepping(system: DrivenModule, accuracy: float | FixedStep, stages: int | None) -> Stepping:
-    """Return how a run steps, with a tolerance or with a fixed step."""
+    """Return the options of steps for a tolerance or a fixed step."""
     if isinstance(accuracy, FixedStep):
         h = accuracy.length
         return Stepping(accuracy.order // 2, 0.0, h, h, fixed=h)
@@ -192,7 +192,7 @@ def stepping(system: DrivenModule, accuracy: float | FixedStep, stages: int | No
         what = f"a run of {inputs.duration:g} s would take {step}"
         remedy = "a shorter run, or slower inputs"
         raise RunError(what, f"model '{system.module.NAME}'", remedy=remedy)
-    best, caution = choice(accuracy)
+    best, caution = stages_for(accuracy)
     return Stepping(
         stages=stages or best,
         tolerance=caution * accuracy,
@@ -202,27 +202,27 @@ def stepping(system: DrivenModule, accuracy: float | FixedStep, stages: int | No
     )
 
 
-def choice(rtol: float) -> tuple[int, float]:
-    """Return the stages of a run's steps, and what part of rtol a step's estimated error may be."""
-    return next((stages, part) for least, stages, part in CHOICE if rtol >= least)
+def stages_for(rtol: float) -> tuple[int, float]:
+    """Return the stages of a step, and its largest estimated error over rtol."""
+    return next((stages, part) for least, stages, part in STAGES if rtol >= least)
 
 
 def layout_of(runs: int, states: int, *, side_by_side: bool) -> Layout:
-    """Return what lies in vectors, for runs of so many states; results do not depend on it."""
+    """Return what vectors hold in runs of this many states; results do not depend on it."""
     if states > MOST_STATES:
         return "lanes"
     return "many" if runs > 1 and side_by_side else "one"
 
 
 def compile_ahead(module: GeneratedModule, stages: int) -> None:
-    """Compile what one run of a module needs with steps of so many stages, if that can be done."""
+    """Compile what one run of a module needs with steps of `stages` stages, if possible."""
     layout = layout_of(1, row_count(module.STATES, module.Parameters()), side_by_side=True)
-    with suppress(PiezoError, OSError):  # the run says so
+    with suppress(PiezoError, OSError):  # the run raises it
         collocation_library(engine_of(module), stages, layout)
 
 
 def read_order(order: object, where: str) -> int:
-    """Return an order; raise `UsageError` if steps have none such."""
+    """Return the order of a step; raise `UsageError` if it is not in `ORDERS`."""
     if isinstance(order, bool) or not isinstance(order, int) or order not in ORDERS:
         raise UsageError(f"{quote(order)} is no order of steps", where, listing(map(str, ORDERS)))
     return order
@@ -237,16 +237,16 @@ def first_step(segment: Segment, times: FloatArray, step: float) -> tuple[float,
     return (until if steps == 1 else segment.start + span / steps), span / steps
 
 
-def start(batch: Batch, plain: Stepping, stop: float, length: float) -> None:
-    """Take runs to `stop` by four dissipative quarters of a step.
+def dissipative_step(batch: Batch, plain: Stepping, stop: float, length: float) -> None:
+    """Advance runs to `stop` by four dissipative quarter steps.
 
-    A run goes on by ordinary quarters from where there is no dissipative one: where an energy is
-    not convex, these take entropy however short they are.
+    Where none is found, ordinary quarters follow: at an energy that is not convex, dissipative
+    steps of any length consume entropy.
     """
     failed = batch.records["failed"].copy()
     quarter = replace(plain, first=0.25 * length, fixed=0.25 * length)
     batch.go_on(replace(quarter, stages=1, lossy=True), stop)
-    through(batch)
+    advance(batch)
     batch.records["failed"] = failed
     batch.go_on(quarter, stop)
-    through(batch)
+    advance(batch)

@@ -1,8 +1,7 @@
-"""A run at its samples, its ledger, and its Dataset: every quantity by name, with units.
+"""The Dataset of a run: every quantity at its samples and the ledger, by name, with units.
 
 Input: a `DrivenModule`, the sample times (nt,), a `Trajectory`.  Output: an `xarray.Dataset` with
-coordinate `time` [s] and, for each bank, its lanes 1..r under the element's name.  Sweeps name the
-quantities of many runs by the same functions.
+coordinate `time` [s] and, for each bank, its lanes 1..r.  Sweeps use the same functions.
 
     supplied_port(t) = int_0^t y u dt
     heat_k(t) = int_0^t W_k z_k dt        produced_k(t) = int_0^t W_k z_k/T dt
@@ -24,7 +23,7 @@ from piezo_sym.run.checks import FloatArray, is_vector
 from piezo_sym.run.module import (
     GeneratedModule,
     Record,
-    exchanges,
+    heat_exchanges,
     lanes,
     row_count,
     verdict_of,
@@ -37,14 +36,14 @@ if TYPE_CHECKING:
 
 Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]", dict[str, Any]]
 Named: TypeAlias = tuple[str, Variable]
-#: Where quantities of elements are asked for, and the word for all of them.
+#: The argument that selects quantities of elements, and its value for all of them.
 OUTPUTS, EVERY = "simulate.outputs", "all"
 
 
 @final
 @dataclass(frozen=True)
 class Trajectory:
-    """A run at its sample times (nt,), nan beyond what it reached, and what it took."""
+    """A run at its sample times (nt,), nan at those it has not reached, and its work."""
 
     start: FloatArray  # (n,): the state at t = 0
     states: FloatArray  # (n, nt)
@@ -54,19 +53,20 @@ class Trajectory:
     steps: int = 0
     evaluations: int = 0
     halvings: int = 0
-    numerical: FloatArray | None = None  # (2, nt): heat and entropy that dissipative starts produce
+    numerical: FloatArray | None = None  # (2, nt): heat and entropy produced by dissipative starts
 
     @staticmethod
     def blank(system: DrivenModule, start: FloatArray, samples: int) -> Trajectory:
-        """Return a run that has not begun."""
-        module, p = system.module, system.parameters
-        sums = len(module.OUTPUTS) + 2 * row_count(module.PROCESSES, p) + len(exchanges(module))
+        """Return a run that has reached no sample."""
+        module = system.module
+        processes = row_count(module.PROCESSES, system.parameters)
+        sums = len(module.OUTPUTS) + 2 * processes + len(heat_exchanges(module))
         rows = start.size, len(module.INPUTS), sums
         states, inputs, integrals = (np.full((size, samples), np.nan) for size in rows)
         return Trajectory(start, states, inputs, integrals)
 
     def at(self, places: NDArray[np.intp]) -> Trajectory:
-        """Return some of the samples."""
+        """Return the run at the samples with these numbers (k,)."""
         return replace(
             self,
             states=self.states[:, places],
@@ -76,7 +76,7 @@ class Trajectory:
         )
 
     def until(self, times: FloatArray) -> tuple[FloatArray, Trajectory]:
-        """Return the times and samples of a run that has no more states."""
+        """Return the times and the run before the first sample that it has not reached."""
         missing = np.isnan(self.states).any(axis=0)
         count = int(np.argmax(missing)) if missing.any() else missing.size
         return times[:count], self.at(np.arange(count))
@@ -84,21 +84,21 @@ class Trajectory:
 
 @final
 @dataclass(frozen=True)
-class Known:
-    """What is known of a run, or of runs of equal sizes, at samples: arrays (rows, [runs], nt)."""
+class Evaluation:
+    """The values of a run, or of runs of equal sizes, at samples: arrays (rows, [runs], nt)."""
 
     system: DrivenModule
     states: FloatArray
-    inputs: FloatArray | None  # or left out
+    inputs: FloatArray | None  # None to leave them out of the quantities
     values: Mapping[str, FloatArray]  # of the module's functions; energies have no rows
-    start: tuple[FloatArray, FloatArray]  # energy and entropy there; of many runs (runs, 1)
+    start: tuple[FloatArray, FloatArray]  # energy and entropy at t = 0; of many runs (runs, 1)
     integrals: FloatArray
-    numerical: FloatArray | None = None  # as in a `Trajectory`
-    dims: tuple[str, ...] = ("time",)  # of a quantity, lanes of a bank aside
+    numerical: FloatArray | None = None  # as in `Trajectory`
+    dims: tuple[str, ...] = ("time",)  # of a quantity, without the lanes of its bank
 
     @staticmethod
-    def of(system: DrivenModule, run: Trajectory) -> Known:
-        """Return what is known of one run."""
+    def of(system: DrivenModule, run: Trajectory) -> Evaluation:
+        """Evaluate one run."""
         module, p, x, u = system.module, system.parameters, run.states, run.inputs
         values = {
             "outputs": module.outputs(x, u, p),
@@ -107,48 +107,48 @@ class Known:
             "entropy": module.entropy(x, p),
         }
         start = module.energy(run.start, p), module.entropy(run.start, p)
-        return Known(system, x, u, values, start, run.integrals, run.numerical)
+        return Evaluation(system, x, u, values, start, run.integrals, run.numerical)
 
     def instants(self) -> Iterator[Named]:
-        """Yield what states and inputs at one time decide."""
+        """Yield the quantities that are functions of state and inputs."""
         module, dims, values = self.system.module, self.dims, self.values
-        named = partial(spread, self.system, dims)
+        named = partial(named_rows, self.system, dims)
         yield from named(module.STATES, self.states)
         if self.inputs is not None:
             yield from named(module.INPUTS, self.inputs)
         yield from named(module.OUTPUTS, values["outputs"], "y_")
         yield from named(module.BODIES, values["temperatures"], "T_")
-        yield "energy", (dims, values["energy"], described("J", "energy U"))
-        yield "entropy", (dims, values["entropy"], described("J/K", "entropy S"))
+        yield "energy", (dims, values["energy"], attributes("J", "energy U"))
+        yield "entropy", (dims, values["entropy"], attributes("J/K", "entropy S"))
 
     def ledger(self) -> Iterator[Named]:
-        """Yield what ports and processes did since the start, and what both balances leave over."""
-        module, dims, named = self.system.module, self.dims, partial(spread, self.system, self.dims)
-        processes, exchanging = self.system.rows(module.PROCESSES), exchanges(module)
-        size, ports = processes[-1].stop if processes else 0, len(module.OUTPUTS)
-        ends = np.cumsum([ports, size, size, len(exchanging)])
+        """Yield integrals over ports and processes since the start; residuals of both balances."""
+        system, dims = self.system, self.dims
+        module, named = system.module, partial(named_rows, system, dims)
+        size, exchanging = row_count(module.PROCESSES, system.parameters), heat_exchanges(module)
+        ends = np.cumsum([len(module.OUTPUTS), size, size, len(exchanging)])
         supplied, heat, produced, exchanged, _ = np.split(self.integrals, ends)
-        made = np.sum(produced, axis=0) + np.sum(exchanged, axis=0)
+        gained = np.sum(produced, axis=0) + np.sum(exchanged, axis=0)
         ambients = [module.OUTPUTS[n] for n in exchanging]
         yield from named(module.OUTPUTS, supplied, "supplied_", ("J", "energy put in by"))
         yield from named(module.PROCESSES, heat, "heat_", ("J", "heat released by"))
         yield from named(module.PROCESSES, produced, "produced_", ("J/K", "entropy produced by"))
         yield from named(ambients, exchanged, "entropy_exchanged_", ("J/K", "entropy brought by"))
         if self.numerical is not None:
-            about = f"by dissipative starts since t = {self.system.inputs.start:g}"
+            about = f"by dissipative starts since t = {system.inputs.start:g}"
             heat, produced = self.numerical
-            yield "heat_numerical", (dims, heat, described("J", f"heat released {about}"))
+            yield "heat_numerical", (dims, heat, attributes("J", f"heat released {about}"))
             text = f"entropy produced {about}"
-            yield "produced_numerical", (dims, produced, described("J/K", text))
-            made = made + produced
+            yield "produced_numerical", (dims, produced, attributes("J/K", text))
+            gained = gained + produced
         energy = self.values["energy"] - self.start[0] - np.sum(supplied, axis=0)
-        entropy = self.values["entropy"] - self.start[1] - made
-        yield "energy_residual", (dims, energy, described("J", "U - U(0) - energy put in"))
+        entropy = self.values["entropy"] - self.start[1] - gained
+        yield "energy_residual", (dims, energy, attributes("J", "U - U(0) - energy put in"))
         text = "S - S(0) - entropy produced - entropy exchanged"
-        yield "entropy_residual", (dims, entropy, described("J/K", text))
+        yield "entropy_residual", (dims, entropy, attributes("J/K", text))
 
 
-def spread(
+def named_rows(
     system: DrivenModule,
     dims: tuple[str, ...],
     records: Sequence[Record],
@@ -156,15 +156,18 @@ def spread(
     prefix: str = "",
     integral: tuple[str, str] | None = None,
 ) -> Iterator[Named]:
-    """Yield the rows of `values` (rows, *dims) by record; `integral`: its unit and text."""
-    for record, part in zip(records, system.rows(records), strict=True):
-        attrs = described(record.unit, record.doc or record.name)
+    """Yield a variable per record from `values` (rows, *dims).
+
+    `integral` is the unit and the description of integrals, which replace those of the records.
+    """
+    for record, row in zip(records, system.rows(records), strict=True):
+        attrs = attributes(record.unit, record.doc or record.name)
         if integral:
             text = f"{integral[1]} {quote(record.name)} since t = {system.inputs.start:g}"
-            attrs = described(integral[0], text)
-        found = np.moveaxis(values[part], 0, -1) if record.bank else values[part.start]
+            attrs = attributes(integral[0], text)
+        array = np.moveaxis(values[row], 0, -1) if record.bank else values[row.start]
         over = (*dims, record.bank) if record.bank else dims
-        yield f"{prefix}{record.name}", (over, found, attrs)
+        yield f"{prefix}{record.name}", (over, array, attrs)
 
 
 def to_dataset(
@@ -172,15 +175,15 @@ def to_dataset(
     times: FloatArray,
     trajectory: Trajectory,
     attrs: Mapping[str, Any],
-    asked: Iterable[Named] = (),
+    more: Iterable[Named] = (),
 ) -> xarray.Dataset:
-    """Return a run as a Dataset; `attrs` are added to its own, `asked` to its quantities."""
+    """Return a run as a Dataset, with these attributes and quantities beside its own."""
     import xarray
 
-    known = Known.of(system, trajectory)
+    evaluation = Evaluation.of(system, trajectory)
     coords = dict(coordinates(system, times))
     data: dict[str, xarray.Variable] = {}
-    for name, variable in (*known.instants(), *known.ledger(), *asked):
+    for name, variable in (*evaluation.instants(), *evaluation.ledger(), *more):
         if name in data or name in coords:
             what = f"two quantities are named '{name}'"
             raise UsageError(what, f"model '{system.module.NAME}'", remedy="rename one in the spec")
@@ -189,34 +192,32 @@ def to_dataset(
 
 
 def model_attrs(system: DrivenModule) -> dict[str, Any]:
-    """Return the attributes that say what was run: the model and the parameters used."""
-    used = vars(system.parameters).items()
-    parameters = {f"parameter_{name}": np.asarray(value)[()] for name, value in used}
-    module = system.module
-    told = {"model": module.NAME, "spec_sha256": module.SPEC_SHA256, "proofs": verdict_of(module)}
-    return {**told, **parameters}
+    """Return the attributes that name the model and its parameters."""
+    module, used = system.module, vars(system.parameters).items()
+    model = {"model": module.NAME, "spec_sha256": module.SPEC_SHA256, "proofs": verdict_of(module)}
+    return model | {f"parameter_{name}": np.asarray(value)[()] for name, value in used}
 
 
 def coordinates(system: DrivenModule, times: FloatArray) -> Iterator[Named]:
-    """Yield the time and the lanes of each bank.
+    """Yield the time and the lanes of each bank, as pandas indexes.
 
-    As pandas indexes: xarray makes them of arrays only after trying to import pint.
+    From arrays, xarray would make these itself, but only after an attempt to import pint.
     """
     import pandas
 
-    yield "time", (("time",), pandas.Index(times), described("s", "time"))
+    yield "time", (("time",), pandas.Index(times), attributes("s", "time"))
     for bank in system.module.BANKS:
         numbers = pandas.RangeIndex(1, lanes(system.parameters, bank) + 1)
-        yield bank, ((bank,), numbers, described("1", f"lane of bank '{bank}'"))
+        yield bank, ((bank,), numbers, attributes("1", f"lane of bank '{bank}'"))
 
 
-def described(unit: str, long_name: str) -> dict[str, Any]:
+def attributes(unit: str, long_name: str) -> dict[str, Any]:
     """Return the attributes of a variable."""
     return {"units": unit, "long_name": long_name}
 
 
 def read_outputs(module: GeneratedModule, outputs: object) -> tuple[str, ...]:
-    """Return the quantities that are asked for, in the module's order; raise `UsageError`."""
+    """Return the selected quantities of elements, in the module's order."""
     names = tuple(record.name for record in module.ELEMENTS)
     if outputs is None:
         return ()
@@ -226,29 +227,30 @@ def read_outputs(module: GeneratedModule, outputs: object) -> tuple[str, ...]:
         expected = f"'{EVERY}', or a list of elements and quantities such as 'damper.heat'"
         raise UsageError(f"{quote(outputs)} is no list of names", OUTPUTS, expected)
     wanted = set[str]()
-    for asked in outputs:  # type: ignore[attr-defined]  # a vector
-        found = [name for name in names if asked in (name, name.rpartition(".")[0])]
-        if not found:
-            raise UsageError(f"unknown name {quote(asked)}", OUTPUTS, remedy=_remedy(asked, names))
-        wanted.update(found)
+    for output in outputs:  # type: ignore[attr-defined]  # a vector
+        matching = [name for name in names if output in (name, name.rpartition(".")[0])]
+        if not matching:
+            remedy = _remedy(str(output), names)
+            raise UsageError(f"unknown name {quote(output)}", OUTPUTS, remedy=remedy)
+        wanted.update(matching)
     return tuple(name for name in names if name in wanted)
 
 
-def _remedy(asked: object, names: tuple[str, ...]) -> str:
-    element = str(asked).rpartition(".")[0]
-    own = [name.rpartition(".")[2] for name in names if name.rpartition(".")[0] == element]
-    if own:
-        return f"'{element}' has {listing(own)}"
-    return nearest(str(asked), (*dict.fromkeys(name.rpartition(".")[0] for name in names), *names))
+def _remedy(output: str, names: tuple[str, ...]) -> str:
+    element = output.rpartition(".")[0]
+    known = [name.rpartition(".") for name in names]
+    if quantities := [quantity for other, _, quantity in known if other == element]:
+        return f"'{element}' has {listing(quantities)}"
+    return nearest(output, (*dict.fromkeys(other for other, _, _ in known), *names))
 
 
 def element_variables(
     system: DrivenModule, run: Trajectory, names: tuple[str, ...]
 ) -> Iterator[Named]:
-    """Yield the quantities of elements over a run that have these names."""
+    """Yield the quantities of elements with these names over a run."""
     if names:
         module = system.module
         values = module.elements(run.states, run.inputs, system.parameters)
-        for name, variable in spread(system, ("time",), module.ELEMENTS, values):
+        for name, variable in named_rows(system, ("time",), module.ELEMENTS, values):
             if name in names:
                 yield name, variable

@@ -1,11 +1,8 @@
 """A user's function of time as a signal, and the search for its jumps.
 
-Input: a function of one time [s].  Output: an `InputFunction`, whose breaks are the first times
-after the jumps, to the last digit.  A pulse shorter than an interval of the search is found only by
-chance.
+Input: a function of one time [s].  Output: an `InputFunction`, whose breaks are the first floats
+after the jumps.  A pulse shorter than an interval of the search is found only by chance.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -19,28 +16,27 @@ from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, number
 from piezo_sym.run.signals import Signal
 
-#: So many steps of a run at least: a function says nothing about how fast it moves.
+#: The fewest steps of a run: how fast a function varies is unknown.
 FUNCTION_STEPS = 500
-#: Arrays of more times are given to the function at once; so many of its values are checked by
-#: calls with one time each, and may differ by so much, as a part of the largest.
+#: An array of more times is passed to the function; this many of its values are compared with
+#: calls for single times, and may differ by this part of the largest.
 MANY, CHECKED, ROUNDING = 16, 40, 1e-12
-#: Into how many intervals a run is divided in the search for jumps.
+#: Intervals of a run in the search for jumps.
 INTERVALS = 2000
-#: A change over an interval is searched if it is so many times the median of its neighbours, and
-#: more than round-off.
+#: An interval is searched if the function changes in it by more than round-off (a part of its
+#: largest value), and by more than 4 times the median of the changes nearby.
 UNUSUAL, LEAST = 4.0, 1e-9
-NEARBY = 4
-#: Over one half of an interval a smooth function changes by about half as much as over all of it; a
-#: jump is all in one half.
+NEARBY = 4  # intervals on each side
+#: A smooth function changes about equally in both halves of an interval; a jump lies in one.
 SMOOTH = 0.7
-#: A change within so small a part of an interval counts as a jump.
+#: A change within this part of an interval counts as a jump.
 STEEP = 1e-6
 
 
 @final
 @dataclass(frozen=True)
 class InputFunction(Signal):
-    """A user's function of one time, asked from `start` on, with arrays where it takes them."""
+    """A user's function of one time, called from `start` on, with arrays if it takes them."""
 
     function: Callable[[float], object]
     where: str
@@ -54,11 +50,11 @@ class InputFunction(Signal):
         return values.reshape(times.shape)
 
     def _one_by_one(self, times: list[float]) -> FloatArray:
-        """Return the values; `value` raises the error of one that is no finite number."""
+        """Return the values; raise `UsageError` for the first that is no finite number."""
         try:
-            found = [self.function(time) for time in times]
-            plain = {type(value) for value in found} <= {float, int, np.float64}
-            values: FloatArray = np.array(found if plain else [], dtype=float)
+            results = [self.function(time) for time in times]
+            plain = {type(value) for value in results} <= {float, int, np.float64}
+            values: FloatArray = np.array(results if plain else [], dtype=float)
         except Exception:  # the user's own code: it may raise anything
             plain = False
         if plain and np.all(np.isfinite(values)):
@@ -66,22 +62,22 @@ class InputFunction(Signal):
         return np.array([self.value(time) for time in times])
 
     def _at_once(self, times: FloatArray) -> FloatArray | None:
-        """Return the values of a function that takes arrays; None of one that does not."""
+        """Return the values of a function that takes arrays; None if it does not."""
         flat = times.ravel()
         try:
             with np.errstate(all="ignore"):
-                given: Any = self.function
-                found: FloatArray = np.array(given(flat.copy()), dtype=float)  # it may write there
+                function: Any = self.function
+                values: FloatArray = np.array(function(flat.copy()), dtype=float)  # it may write
         except Exception:  # the user's own code: it may raise anything
             return None
-        if found.shape != flat.shape or not np.all(np.isfinite(found)):
+        if values.shape != flat.shape or not np.all(np.isfinite(values)):
             return None
-        size = np.abs(found).max()
-        steepest = int(np.argmax(np.abs(np.diff(found))))
+        size = np.abs(values).max()
+        steepest = int(np.argmax(np.abs(np.diff(values))))
         some = {*np.linspace(0, flat.size - 1, CHECKED).astype(int).tolist()}
-        some |= {steepest, steepest + 1, int(np.argmax(found)), int(np.argmin(found))}
-        same = (abs(self.value(float(flat[n])) - found[n]) <= ROUNDING * size for n in some)
-        return found if all(same) else None
+        some |= {steepest, steepest + 1, int(np.argmax(values)), int(np.argmin(values))}
+        same = (abs(self.value(float(flat[n])) - values[n]) <= ROUNDING * size for n in some)
+        return values if all(same) else None
 
     def value(self, time: float) -> float:
         """Return the value at one time; raise `UsageError` if it is no finite number."""
@@ -93,22 +89,23 @@ class InputFunction(Signal):
         return number(value, f"{self.where}({time:.6g})")
 
     @cached_property
-    def _known(self) -> dict[float, tuple[float, ...]]:
+    def _jumps(self) -> dict[float, tuple[float, ...]]:
+        """The jumps found so far, by the end of the run."""
         return {}
 
     def _corners(self, duration: float) -> Iterable[float]:
         """Return the times of its jumps."""
-        if duration not in self._known:
-            self._known[duration] = jumps(self, self.start, duration)
-        return self._known[duration]
+        if duration not in self._jumps:
+            self._jumps[duration] = jumps(self, self.start, duration)
+        return self._jumps[duration]
 
     def max_step(self, duration: float) -> float:
-        """Return a small part of the run."""
+        """Return the longest step [s]."""
         return (duration - self.start) / FUNCTION_STEPS
 
 
 def jumps(function: Callable[[Any], Any], start: float, end: float) -> tuple[float, ...]:
-    """Return the times in (start, end) from which on a function has jumped, in order."""
+    """Return the first times after the jumps of a function in (start, end), in order."""
     times = np.linspace(start, nextafter(end, start), INTERVALS + 1)
     values = function(times)
     changes = np.abs(np.diff(values))
@@ -116,8 +113,8 @@ def jumps(function: Callable[[Any], Any], start: float, end: float) -> tuple[flo
     usual = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * NEARBY + 1), axis=1)
     least = LEAST * np.max(np.abs(values))
     steep = np.flatnonzero((changes > UNUSUAL * usual) & (changes > least)).tolist()
-    found = (_jump(function, times[k : k + 2], values[k : k + 2]) for k in steep)
-    return tuple(time for time in found if time is not None)
+    after = (_jump(function, times[k : k + 2], values[k : k + 2]) for k in steep)
+    return tuple(time for time in after if time is not None)
 
 
 def _jump(function: Callable[[Any], Any], ends: FloatArray, values: FloatArray) -> float | None:

@@ -1,8 +1,8 @@
-"""The domain guard: stops a run at the first accepted state outside the domain of the proofs.
+"""The domain guard: errors of runs that leave the domain in which the proofs hold.
 
-Input: states and inputs along a run.  Output: nothing, or a `RunError` that names the condition,
-the time and the values that break it.  A condition holds when its margin (left minus right side)
-is > 0 if it is strict, >= 0 otherwise; nan holds nowhere.
+Input: states and inputs along a run.  Output: nothing, or a `RunError` with the condition, the time
+and the values that violate it.  A condition holds when its margin (left minus right side) is > 0 if
+it is strict, >= 0 otherwise; a margin of nan fails.
 """
 
 import re
@@ -19,7 +19,7 @@ from piezo_sym.run.system import DrivenModule
 
 NAME = re.compile(r"[A-Za-z_]\w*")
 MOST_VALUES = 4
-#: Inputs are checked so often in each of the longest steps that they allow; numbers in all.
+#: Checks of inputs within their longest step; and the most numbers of states in all checks.
 CHECKS, MOST_NUMBERS = 4, 5_000_000
 
 #: The ending of an element's largest effort; and how far beyond it round-off may be, of it.
@@ -83,9 +83,9 @@ def crossing(
     right: float,
     path: Callable[[float], tuple[FloatArray, FloatArray]],
 ) -> float:
-    """Return the time [s] in (left, right] where `path` (t -> x, u) leaves the domain.
+    """Return the first time [s] in (left, right] at which `path` (t -> x, u) is outside the domain.
 
-    It holds at `left` and fails at `right`; bisection narrows that down to rounding.
+    It is inside at `left` and outside at `right`; found by bisection, to round-off.
     """
     while (middle := left + (right - left) / 2) not in (left, right):
         if np.any(system.violated(*path(middle))):
@@ -96,39 +96,40 @@ def crossing(
 
 
 def check_inputs(system: DrivenModule, x: FloatArray, samples: FloatArray) -> None:
-    """Raise `RunError` if inputs leave the domain; steps look at conditions on the state alone.
+    """Raise `RunError` if inputs leave the domain; steps check conditions on the state only.
 
-    Conditions on inputs do not depend on the state: that at t = 0, x (n,), stands for all.
+    Conditions on inputs do not depend on the state, so x (n,) is the one at t = 0.
     """
     limits, rows = input_conditions(system)
     for segment in system.inputs.segments if rows else ():
         times = np.array([segment.start])
         if rows & {row for row, _ in segment.varying}:
-            times = _checked_times(system, segment, samples, MOST_NUMBERS / x.size)
+            times = _times_to_check(system, segment, samples, MOST_NUMBERS / x.size)
         states = np.tile(x[:, None], times.size)
         failed = np.any(system.violated(states, segment.over(times))[limits], axis=0)
         if np.any(failed):
-            raise _left(system, segment, x, times[: np.argmax(failed) + 1])
+            raise _input_error(system, segment, x, times[: np.argmax(failed) + 1])
 
 
 def input_conditions(system: DrivenModule) -> tuple[list[int], set[int]]:
     """Return which conditions are on inputs, and the rows of the inputs that they name."""
-    known = {record.name for record in system.module.INPUTS}
-    conditions = enumerate(condition.text for condition in system.module.DOMAIN)
-    limits = [n for n, text in conditions if depth(system, text) == 1]
-    said = {name for n in limits for name in NAME.findall(system.module.DOMAIN[n].text)} & known
-    return limits, {n for n, record in enumerate(system.module.INPUTS) if record.name in said}
+    texts = [condition.text for condition in system.module.DOMAIN]
+    limits = [n for n, text in enumerate(texts) if depth(system, text) == 1]
+    names = {name for n in limits for name in NAME.findall(texts[n])}
+    return limits, {n for n, record in enumerate(system.module.INPUTS) if record.name in names}
 
 
-def inputs_move(system: DrivenModule) -> bool:
-    """Return whether inputs that conditions name may change: if not, t = 0 tells all of them."""
+def inputs_vary(system: DrivenModule) -> bool:
+    """Return whether inputs that conditions name may vary: if not, t = 0 is checked alone."""
     _, rows = input_conditions(system)
     first, *others = system.inputs.segments
     return bool(rows) and bool(others or rows & {row for row, _ in first.varying})
 
 
-def _left(system: DrivenModule, segment: Segment, x: FloatArray, times: FloatArray) -> RunError:
-    """Return the error of inputs that leave the domain at the last of `times`, or just before."""
+def _input_error(
+    system: DrivenModule, segment: Segment, x: FloatArray, times: FloatArray
+) -> RunError:
+    """Return the error of inputs that leave the domain between the last two of `times`."""
     t = float(times[-1])
     if times.size > 1:
         t = crossing(system, float(times[-2]), t, lambda time: (x, segment.at(time)))
@@ -137,10 +138,10 @@ def _left(system: DrivenModule, segment: Segment, x: FloatArray, times: FloatArr
     return error
 
 
-def _checked_times(
+def _times_to_check(
     system: DrivenModule, segment: Segment, samples: FloatArray, most: float
 ) -> FloatArray:
-    """Return the times of a segment at which its inputs are checked, samples among them."""
+    """Return the times in a segment at which inputs are checked, at most `most` and the samples."""
     part = (segment.stop - segment.start) / system.inputs.duration
     number = CHECKS * part * system.inputs.duration / system.inputs.max_step
     even = np.linspace(segment.start, segment.stop, 2 + int(min(number, most * part)))
@@ -149,7 +150,7 @@ def _checked_times(
 
 
 def domain_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> RunError:
-    """Return the error for a state outside the domain: the condition nearest to the cause."""
+    """Return the error for a state outside the domain, with the failed condition of least depth."""
     failed = np.flatnonzero(system.violated(x, u)).tolist()
     row = min(failed, key=lambda k: depth(system, system.module.DOMAIN[k].text))
     condition, margin = system.module.DOMAIN[row], system.margins(x, u)[row]
@@ -173,12 +174,12 @@ def rate_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> 
 
 
 def place(system: DrivenModule) -> str:
-    """Return where an error of this run is."""
+    """Return the place that errors of this run name."""
     return f"model '{system.module.NAME}'"
 
 
 def depth(system: DrivenModule, text: str) -> int:
-    """Return how far a condition is from what a user sets: 0 parameters, 1 inputs, 2 states."""
+    """Return on what a condition depends at most: 0 parameters, 1 inputs, 2 states."""
     names = set(NAME.findall(text)) - {record.name for record in system.module.PARAMETERS}
     return (1 if names <= {r.name for r in system.module.INPUTS} else 2) if names else 0
 
@@ -192,7 +193,7 @@ def remedies(system: DrivenModule, text: str) -> list[str]:
 
 
 def values_in(system: DrivenModule, text: str, x: FloatArray, u: FloatArray) -> list[Value]:
-    """Return the value of every symbol in a condition's text, or the temperatures if none."""
+    """Return the value of every symbol in a condition; the temperatures if it has none."""
     module, p, bodies = system.module, system.parameters, body_values(system, x)
     given = by_name(module.STATES, p, x) | by_name(module.INPUTS, p, u) | vars(p)
     records = (*module.STATES, *module.INPUTS, *module.PARAMETERS)

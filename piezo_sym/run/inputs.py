@@ -1,8 +1,8 @@
-"""The inputs of a run: what a user wrote for each, as signals, and the segments between breaks.
+"""The inputs of a run as signals, and its segments between their breaks.
 
 Input: a mapping of names to numbers, (t, values), functions or signals.  Output: `Inputs`, whose
-`segments` tile the run so that within each one the inputs u (m,) have no jump: at its start they
-are the limit from the right, at its end the limit from the left.
+`segments` cover the run.  The inputs u (m,) do not jump within a segment: at its start they are the
+limit from the right, at its end the limit from the left.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,27 +18,27 @@ from numpy.typing import ArrayLike
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
 from piezo_sym.run.functions import InputFunction
-from piezo_sym.run.module import GeneratedModule, others
+from piezo_sym.run.module import GeneratedModule, names_elsewhere
 from piezo_sym.run.samples import Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal
 
 InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
 
-CLOSE = 1e-12  # of the duration: breaks nearer than this are one
-LEAST_JUMP = 1e-6  # of an input's size nearby: a smaller difference is a corner's round-off
+CLOSE = 1e-12  # of the end time: breaks nearer than this are one
+LEAST_JUMP = 1e-6  # of an input's size nearby: smaller differences are round-off of a corner
 
 
 @final
 @dataclass(frozen=True)
 class Segment:
-    """A stretch of time [start, stop] and the inputs in it, evaluated within [low, high]."""
+    """The time from start to stop [s], and the inputs in it, evaluated within [low, high]."""
 
     start: float
     stop: float
     low: float
     high: float
-    base: FloatArray
-    varying: tuple[tuple[int, Signal], ...]
+    base: FloatArray  # values of constant inputs (m,)
+    varying: tuple[tuple[int, Signal], ...]  # rows and signals of the others
 
     def at(self, t: float) -> FloatArray:
         """Return the inputs u (m,) at one time."""
@@ -70,7 +70,7 @@ class Inputs:
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
-        """Segments between breaks, in order; breaks that round to one another are one."""
+        """Segments between breaks, in order; breaks closer than `CLOSE` are one."""
         groups = [[self.start]]
         times = {t for s in self.signals for t in s.breaks(self.end) if t > self.start}
         for t in (*sorted(times), self.end):
@@ -80,44 +80,43 @@ class Inputs:
         return tuple(self.segment(a, b) for a, b in pairwise(groups))
 
     def segment(self, first: Sequence[float], last: Sequence[float]) -> Segment:
-        """Return the segment between two groups of breaks."""
+        """Return the segment between two groups of breaks that are each one."""
         stop = self.end if self.end in last else last[0]
         low = nextafter(first[-1], inf) if first[-1] > self.start else self.start
         base = np.array([s.value if isinstance(s, Constant) else 0.0 for s in self.signals])
-        varying = tuple(
-            (row, s) for row, s in enumerate(self.signals) if not isinstance(s, Constant)
-        )
+        rows = enumerate(self.signals)
+        varying = tuple((row, signal) for row, signal in rows if not isinstance(signal, Constant))
         return Segment(first[0], stop, low, nextafter(last[0], 0.0), base, varying)
 
     def at_samples(self, times: FloatArray) -> FloatArray:
-        """Return the inputs (m, nt): at a jump those after it, at the end those before."""
+        """Return the inputs (m, nt): at a jump those after it, but at the end those before it."""
         starts = np.array([segment.start for segment in self.segments])
         place = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
-        found = np.empty((len(self.signals), times.size))
+        u = np.empty((len(self.signals), times.size))
         for n in np.unique(place):
-            found[:, place == n] = self.segments[n].over(times[place == n])
-        return found
+            u[:, place == n] = self.segments[n].over(times[place == n])
+        return u
 
     @cached_property
     def jumps(self) -> frozenset[float]:
-        """Starts of the segments before which an input jumps, and of the run."""
-        found = (later.start for first, later in pairwise(self.segments) if jump(first, later))
-        return frozenset({self.start, *found})
+        """The start of the run, and of each segment before which an input jumps."""
+        after = (later.start for first, later in pairwise(self.segments) if any_jump(first, later))
+        return frozenset({self.start, *after})
 
     @cached_property
     def max_step(self) -> float:
-        """Longest step [s] that resolves every input."""
+        """Longest step [s] of methods that sample every input once per step."""
         return min((signal.max_step(self.end) for signal in self.signals), default=inf)
 
     @cached_property
     def longest_step(self) -> float:
-        """Longest step [s] that resolves every input by looking at it in several places."""
+        """Longest step [s] of methods with several stages per step."""
         return min((signal.longest_step(self.end) for signal in self.signals), default=inf)
 
 
-def jump(first: Segment, later: Segment) -> bool:
-    """Return whether an input jumps between two segments, one after the other."""
-    # a few times show how large the inputs of a segment are, its ends among them
+def any_jump(first: Segment, later: Segment) -> bool:
+    """Return whether an input jumps from one segment to the next."""
+    # five times, the ends among them, show the size of the inputs
     before, after = (s.over(np.linspace(s.start, s.stop, 5)) for s in (first, later))
     size = np.maximum(np.abs(before).max(axis=1), np.abs(after).max(axis=1))
     return bool(np.any(np.abs(after[:, 0] - before[:, -1]) > LEAST_JUMP * size))
@@ -132,7 +131,9 @@ def read_inputs(
     """Return the inputs of a run; those not given keep the module's defaults."""
     names = [record.name for record in module.INPUTS]
     defaults = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
-    values = defaults | known_keys(given, names, "simulate.inputs", others(module, "inputs"))
+    values = defaults | known_keys(
+        given, names, "simulate.inputs", names_elsewhere(module, "inputs")
+    )
     span = start, start + duration
     named = ((record, f"simulate.inputs.{record.name}") for record in module.INPUTS)
     signals = (read_signal(values[r.name], where, span, r.unit) for r, where in named)
@@ -140,7 +141,7 @@ def read_inputs(
 
 
 def read_signal(value: object, where: str, span: tuple[float, float], unit: str) -> Signal:
-    """Return what a user wrote for one input, which is in `unit`, as a signal over a span [s]."""
+    """Return a user's value of one input, in `unit`, as a signal over a span of time [s]."""
     signal = as_signal(value, where, span[0])
     if isinstance(signal, Samples) and signal.unit not in ("", unit):
         from piezo_sym.expressions.units import parse_unit

@@ -1,7 +1,7 @@
 """Integration of dx/dt = rhs(x, u(t)) by SciPy's solvers, step by step.
 
 Input: a `DrivenModule`, a segment of its inputs, the state x (n,) at its start and a `Tolerance`.
-Output: the solver after each step that it accepts.
+Output: the solver after each accepted step.
 """
 
 from __future__ import annotations
@@ -23,48 +23,50 @@ if TYPE_CHECKING:
 
 METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 IMPLICIT = ("Radau", "BDF", "LSODA")
-MOST_STILL = 20  # steps in a row that do not change the time
-SHORTEST = 1e-12  # of a segment: no step shorter than this is tried again
+MOST_STILL = 20  # the most steps in a row that do not change the time
+SHORTEST = 1e-12  # of a segment: the shortest first step after a failure
 
 
 @final
 @dataclass(frozen=True)
 class Tolerance:
-    """How a run is integrated: SciPy's method, and its error bound rtol |x| + atol (n,)."""
+    """One of SciPy's methods, and its error bound rtol |x| + atol (n,)."""
 
     method: str
     rtol: float
     atol: FloatArray
 
 
-def accepted(
+def accepted_steps(
     system: DrivenModule, segment: Segment, x: FloatArray, tolerance: Tolerance
 ) -> Iterator[OdeSolver]:
-    """Yield the solver of one segment after each step it accepts; `nfev` counts on over restarts.
+    """Yield the solver of one segment after each accepted step; `nfev` includes all restarts.
 
-    LSODA takes a trial state where the laws give nan for an answer, and other solvers give up
-    near one. So a step that fails is tried again from the last good state, ten times shorter.
+    LSODA accepts trial states at which the laws are nan, and other solvers give up near one. So a
+    step that fails is repeated from the last accepted state, ten times shorter.
     """
     span = trial = segment.stop - segment.start
     solver, rest, spent, still = None, segment, 0, 0
     while solver is None or solver.status == "running":
         try:
-            solver = advanced(solver or new_solver(system, rest, x, tolerance, trial, spent))
+            solver = advance(solver or new_solver(system, rest, x, tolerance, trial, spent))
         except (ValueError, ArithmeticError, UserWarning) as cause:
             spent, trial, solver = solver.nfev if solver else spent, trial / 10, None
             if trial < SHORTEST * span:
-                raise stopped(system, tolerance, rest.start, str(cause)) from cause
+                raise solver_error(system, tolerance, rest.start, str(cause)) from cause
         else:
             x, trial = solver.y.copy(), float(solver.t) - rest.start
             still = 0 if trial else still + 1
             if still > MOST_STILL:
-                raise stopped(system, tolerance, rest.start, "its steps are too short for the time")
+                raise solver_error(
+                    system, tolerance, rest.start, "its steps are too short for the time"
+                )
             rest = replace(segment, start=float(solver.t))
             yield solver
 
 
-def advanced(solver: OdeSolver) -> OdeSolver:
-    """Return the solver one step on; raise what it raises, or `ArithmeticError` with its reason."""
+def advance(solver: OdeSolver) -> OdeSolver:
+    """Return the solver after one step; raise its exception, or `ArithmeticError` if it fails."""
     with np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.filterwarnings("error", message="lsoda")
         reason = solver.step()
@@ -97,7 +99,7 @@ def new_solver(
     return solver
 
 
-def stopped(system: DrivenModule, tolerance: Tolerance, t: float, reason: str) -> RunError:
+def solver_error(system: DrivenModule, tolerance: Tolerance, t: float, reason: str) -> RunError:
     """Return the error of a solver that cannot go on."""
     what = f"solver {tolerance.method} cannot go on from t = {t:.6g} s: {reason.rstrip('.')}"
     remedy = "look at the inputs and the state there, try another method or rtol"

@@ -1,11 +1,10 @@
-"""Which method runs a module, and its engine: the discrete gradient in C wherever there is one.
+"""The choice of a run's method, and its engine.
 
-Input: a generated module, the method and the step that a user named, or none.  Output: a
-`ChosenMethod`: its name, its engine, and a note that says why it was chosen.
+Input: a generated module, the user's method and step, or None.  Output: a `ChosenMethod`.
 
-A user who names no method gets the discrete gradient.  A module without C beside it, written by
-hand or changed in Python, is run by LSODA; so is one whose C cannot be compiled here, with one
-warning.  A method or a step that was named is never replaced: without an engine it is refused.
+The default is the discrete gradient, compiled.  A module without C beside it, such as one written
+by hand, runs by LSODA; so does one whose C cannot be compiled here, with one warning.  A method or
+a step that the user named is never replaced: without an engine it is an error.
 """
 
 import ctypes
@@ -31,7 +30,7 @@ FALLBACK = "LSODA"
 @final
 @dataclass(frozen=True)
 class ChosenMethod:
-    """The method of a run; only the discrete gradient has an `engine`."""
+    """The method of a run, its engine (of the discrete gradient alone), and why it was chosen."""
 
     method: str
     engine: Engine | None
@@ -39,7 +38,7 @@ class ChosenMethod:
 
 
 def checked_method(method: object) -> str | None:
-    """Return a method's name, or None where none is named; raise `UsageError` otherwise."""
+    """Return a method's name, or None if the user named none; raise `UsageError` otherwise."""
     if method is not None and (not isinstance(method, str) or method not in OFFERED):
         what = f"unknown method {quote(method)}"
         raise UsageError(what, "simulate.method", listing(OFFERED))
@@ -51,24 +50,24 @@ def choose_method(module: GeneratedModule, method: str | None, step: object) -> 
     if method not in (None, METHOD):
         return ChosenMethod(method, None, f"none: method {method} was asked for")
     free = method is None and step is None
-    if free and not _has_source(module):
+    if free and not _has_c(module):
         return ChosenMethod(FALLBACK, None, "none: the module has no C source beside it")
-    found = _found(module)
-    if isinstance(found, Engine):
-        return ChosenMethod(METHOD, found, f"compiled by {_compiler(found)}")
+    engine = _engine_or_error(module)
+    if isinstance(engine, Engine):
+        return ChosenMethod(METHOD, engine, f"compiled by {_compiler(engine)}")
     if free:
-        _warn(module.NAME, str(found))
-        return ChosenMethod(FALLBACK, None, f"none: {found}")
+        _warn(module.NAME, str(engine))
+        return ChosenMethod(FALLBACK, None, f"none: {engine}")
     instead = f"leave out step, and take method='{FALLBACK}' for a run in NumPy"
-    remedy = f"{found.remedy}; or {instead}" if found.remedy else instead
-    raise EngineError(found.what, found.where, remedy=remedy)
+    remedy = f"{engine.remedy}; or {instead}" if engine.remedy else instead
+    raise EngineError(engine.what, engine.where, remedy=remedy)
 
 
-def _found(module: GeneratedModule) -> Engine | EngineError:
-    if not _own(module):
+def _engine_or_error(module: GeneratedModule) -> Engine | EngineError:
+    if not _module_file(module):
         what = "is no module loaded from a file, so no C source is its own"
         return EngineError(what, f"model '{module.NAME}'")
-    if not os.path.isfile(_own(module)):
+    if not os.path.isfile(_module_file(module)):
         remedy = f"check that {path_text(cache_folder())} can be written"
         return EngineError("its C source was not kept", remedy=remedy)
     try:
@@ -83,15 +82,15 @@ def _compiler(engine: Engine) -> str:
     return one_line(ctypes.string_at(ctypes.addressof(text)).decode(errors="replace").strip())
 
 
-def _own(module: object) -> str:
-    """Return the file that a module was loaded from, beside which its C is; or nothing."""
+def _module_file(module: object) -> str:
+    """Return the file that a module was loaded from, with its C beside it; "" if there is none."""
     return (getattr(module, "__file__", None) or "") if isinstance(module, ModuleType) else ""
 
 
-def _has_source(module: GeneratedModule) -> bool:
-    """Return whether a module came with C: there is some, or not even its own file is left."""
-    own, beside = _own(module), (source_path(module, ending) for ending in (".h", ".c"))
-    return bool(own) and (not os.path.isfile(own) or any(map(os.path.isfile, beside)))
+def _has_c(module: GeneratedModule) -> bool:
+    """Return whether C is beside a module, or the module's file was deleted, too."""
+    file, beside = _module_file(module), (source_path(module, ending) for ending in (".h", ".c"))
+    return bool(file) and (not os.path.isfile(file) or any(map(os.path.isfile, beside)))
 
 
 @lru_cache(maxsize=256)

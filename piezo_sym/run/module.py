@@ -1,11 +1,12 @@
-"""What a generated module offers: the one interface that this stage runs.
+"""The interface of generated modules, and the rows of their records in arrays.
 
 Input: a module object from generated/<model>/<model>.py.  Output: the same object, checked to have
-every name of the interface, and the rows that each of its records takes in an array.
+every name of the interface; the rows of each record.
 """
 
 import re
 from collections.abc import Callable, Sequence
+from itertools import accumulate, pairwise
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -16,7 +17,7 @@ from piezo_sym.run.checks import FloatArray
 
 
 class Record(Protocol):
-    """A row of an array: name, SI unit, one line on it, its bank if it has a row per lane."""
+    """A row of an array: name, SI unit, description, and its bank if it has a row per lane."""
 
     name: str
     unit: str
@@ -62,7 +63,7 @@ class GeneratedModule(Protocol):
 
 
 ModuleT = TypeVar("ModuleT")
-UNPROVED = "NOT PROVED"  # what the verdict of a module begins with that is not proved
+UNPROVED = "NOT PROVED"  # how the verdict of a module that is not proved begins
 
 
 def checked(module: ModuleT) -> ModuleT:
@@ -76,13 +77,13 @@ def checked(module: ModuleT) -> ModuleT:
 
 
 def verdict_of(module: GeneratedModule) -> str:
-    """Return what a module's head says of its proofs: "skew, ... PROVED", or "NOT PROVED (...)"."""
-    found = re.search(r"^Proofs: +(.+)$", module.__doc__ or "", re.MULTILINE)
-    return found[1] if found else f"{UNPROVED} (its head says nothing of proofs)"
+    """Return the verdict in a module's docstring: "skew, ... PROVED", "NOT PROVED (...)"."""
+    line = re.search(r"^Proofs: +(.+)$", module.__doc__ or "", re.MULTILINE)
+    return line[1] if line else f"{UNPROVED} (its head says nothing of proofs)"
 
 
 def held(module: GeneratedModule, margins: FloatArray) -> NDArray[np.bool_]:
-    """Return whether each condition holds, from its margin (conditions, *batch); nan does not."""
+    """Return whether each condition holds, by its margin (conditions, *batch); nan fails."""
     strict = np.array([condition.strict for condition in module.DOMAIN], dtype=bool)
     strict = strict.reshape(-1, *(1,) * (margins.ndim - 1))
     return np.where(strict, margins > 0, margins >= 0)
@@ -95,19 +96,14 @@ def lanes(parameters: Any, bank: str) -> int:
 
 def rows(records: Sequence[Record], parameters: Any) -> tuple[slice, ...]:
     """Return the rows of each record in an array that spreads banks: one, or one per lane."""
-    found: list[slice] = []
-    start = 0
-    for record in records:
-        size = lanes(parameters, record.bank) if record.bank else 1
-        found.append(slice(start, start + size))
-        start += size
-    return tuple(found)
+    sizes = (lanes(parameters, record.bank) if record.bank else 1 for record in records)
+    return tuple(slice(first, last) for first, last in pairwise(accumulate(sizes, initial=0)))
 
 
 def by_name(records: Sequence[Record], parameters: Any, x: FloatArray) -> dict[str, Any]:
     """Return the rows of x (n,) by record: a number, for a bank one per lane."""
-    parts = zip(records, rows(records, parameters), strict=True)
-    return {r.name: x[part] if r.bank else float(x[part.start]) for r, part in parts}
+    slices = zip(records, rows(records, parameters), strict=True)
+    return {r.name: x[row] if r.bank else float(x[row.start]) for r, row in slices}
 
 
 def row_count(records: Sequence[Record], parameters: Any) -> int:
@@ -115,32 +111,31 @@ def row_count(records: Sequence[Record], parameters: Any) -> int:
     return sum(lanes(parameters, record.bank) if record.bank else 1 for record in records)
 
 
-def exchanges(module: GeneratedModule) -> list[int]:
-    """Return which outputs belong to heat exchanges with the surroundings, such as ambients.
+def heat_exchanges(module: GeneratedModule) -> list[int]:
+    """Return the numbers of the outputs of heat exchanges with the surroundings, such as ambients.
 
-    Their output is the temperature of a body; no other port has one.
+    Their output is the temperature of a body; that of no other port is.
     """
     return [n for n, record in enumerate(module.OUTPUTS) if record.unit == "K"]
 
 
-def others(module: GeneratedModule, kind: str) -> dict[str, str]:
-    """Return names that are no `kind` ("parameters", "initial", "inputs"), and which they are."""
+def names_elsewhere(module: GeneratedModule, kind: str) -> dict[str, str]:
+    """Return names that are of another kind ("parameters", "initial", "inputs"), and of which."""
     kinds = {"parameters": module.PARAMETERS, "initial": module.STATES, "inputs": module.INPUTS}
-    return {r.name: name for name, records in kinds.items() if name != kind for r in records}
+    return {r.name: other for other, records in kinds.items() if other != kind for r in records}
 
 
 def row_names(records: Sequence[Record], parameters: Any) -> list[str]:
     """Return the names of all rows of an array that spreads banks: q, phi_1, phi_2, S."""
-    found = []
+    names = []
     for record in records:
         size = lanes(parameters, record.bank) if record.bank else 0
-        found += [f"{record.name}_{n + 1}" for n in range(size)] or [record.name]
-    return found
+        names += [f"{record.name}_{n + 1}" for n in range(size)] or [record.name]
+    return names
 
 
 def row_name(records: Sequence[Record], parameters: Any, row: int) -> str:
     """Return the name of one row, for a message: `q`, or `phi[2]` for the second lane."""
-    for record, part in zip(records, rows(records, parameters), strict=True):
-        if part.start <= row < part.stop:
-            return f"{record.name}[{row - part.start + 1}]" if record.bank else record.name
-    return str(row)
+    slices = zip(records, rows(records, parameters), strict=True)
+    record, first = next((r, place.start) for r, place in slices if row < place.stop)
+    return f"{record.name}[{row - first + 1}]" if record.bank else record.name

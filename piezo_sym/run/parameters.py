@@ -1,7 +1,7 @@
-"""The parameters, initial state and sample times of a run, from what a user wrote.
+"""The parameters, initial state and sample times of a run, from a user's arguments.
 
 Input: mappings of names to numbers, or for a bank to lists of one number per lane; times; a Dataset
-to go on from.  Output: the module's frozen `Parameters`, the state x (n,) at t = 0, and the times
+to continue.  Output: the module's frozen `Parameters`, the state x (n,) at t = 0, and the times
 (nt,) of the samples.
 """
 
@@ -17,22 +17,22 @@ from piezo_sym.errors import RunError, UsageError, quote
 from piezo_sym.run.checks import (
     FloatArray,
     increasing,
+    integer,
     is_number,
     is_vector,
     known_keys,
     number,
     positive,
     vector,
-    whole,
 )
-from piezo_sym.run.module import GeneratedModule, lanes, others, row_names, rows
+from piezo_sym.run.module import GeneratedModule, lanes, names_elsewhere, row_names, rows
 
 if TYPE_CHECKING:
     import xarray
 
 LaneValue: TypeAlias = float | Sequence[float] | FloatArray
 
-#: Of the duration: a sample nearer to the end than this is the end.
+#: A sample nearer to the end than this part of the duration is the end.
 CLOSE = 1e-12
 SAMPLES = 1001
 MOST_LANES = 10_000_000
@@ -44,7 +44,7 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
     """Return the module's parameters with those a user gave in place of the defaults."""
     default = module.Parameters()
     banks = {record.name: record.bank for record in module.PARAMETERS}
-    values, sizes = _known(module, given), read_sizes(module, given)
+    values, sizes = _checked_keys(module, given), read_sizes(module, given)
     merged = {name: values.get(name, value) for name, value in vars(default).items()}
     changed: dict[str, Any] = {
         name: lane_value(merged[name], sizes.get(bank or ""), f"simulate.parameters.{name}")
@@ -55,25 +55,25 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
 
 def read_sizes(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, int]:
     """Return the number of lanes of each bank."""
-    default, values = module.Parameters(), _known(module, given)
-    found = {}
+    default, values = module.Parameters(), _checked_keys(module, given)
+    sizes = {}
     for bank in module.BANKS:
         name = f"{bank}_count"
         size = values.get(name, lanes(default, bank))
-        found[bank] = whole(size, f"simulate.parameters.{name}", 1, MOST_LANES)
-    return found
+        sizes[bank] = integer(size, f"simulate.parameters.{name}", 1, MOST_LANES)
+    return sizes
 
 
-def _known(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, Any]:
-    """Return what a user gave, if all of it is there."""
+def _checked_keys(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, Any]:
+    """Return a user's parameters and sizes; raise `UsageError` at an unknown name."""
     names = [record.name for record in module.PARAMETERS]
     counts = [f"{bank}_count" for bank in module.BANKS]
-    places = others(module, "parameters")
-    return dict(known_keys(given, (*names, *counts), "simulate.parameters", places))
+    places = names_elsewhere(module, "parameters")
+    return known_keys(given, (*names, *counts), "simulate.parameters", places)
 
 
 def lane_value(value: object, size: int | None, where: str) -> float | tuple[float, ...]:
-    """Return a number, or where there is a bank of `size` lanes also a tuple of one per lane."""
+    """Return a number, or for a bank of `size` lanes (None: no bank) a tuple of one per lane."""
     if not is_vector(value):
         return number(value, where)
     if size is None:
@@ -90,38 +90,35 @@ def lane_value(value: object, size: int | None, where: str) -> float | tuple[flo
 def read_initial(
     module: GeneratedModule, parameters: Any, u: FloatArray, given: Mapping[str, LaneValue] | None
 ) -> FloatArray:
-    """Return the state (n,) at t = 0, with inputs u (m,): the module's own, and what is given."""
-    given = getattr(given, "initial", given)  # that of an OperatingPoint
-    _refuse_lanes(module, parameters, given or ())
-    names, places = [record.name for record in module.STATES], others(module, "initial")
+    """Return the state (n,) at t = 0, with inputs u (m,): the default, changed where given."""
+    given = getattr(given, "initial", given)  # of an OperatingPoint
+    _refuse_single_lanes(module, parameters, given or ())
+    names, places = [record.name for record in module.STATES], names_elsewhere(module, "initial")
     hot = {f"T_{record.name}": n for n, record in enumerate(module.BODIES)}
     values = known_keys(given, [*names, *hot], "simulate.initial", places)
     x = own_initial(module, parameters, u)
-    for record, part in zip(module.STATES, rows(module.STATES, parameters), strict=True):
+    for record, row in zip(module.STATES, rows(module.STATES, parameters), strict=True):
         if record.name in values:
             size = lanes(parameters, record.bank) if record.bank else None
-            where = f"simulate.initial.{record.name}"
-            x[part] = lane_value(values[record.name], size, where)
-    for name in (word for word in hot if word in values and word not in names):
+            x[row] = lane_value(values[record.name], size, f"simulate.initial.{record.name}")
+    for name in (name for name in hot if name in values and name not in names):
         where = f"simulate.initial.{name}"
-        row = put_temperature(module, parameters, x, hot[name], values[name], where)
-        state = row_names(module.STATES, parameters)[row]
+        changed = set_temperature(module, parameters, x, hot[name], values[name], where)
+        state = row_names(module.STATES, parameters)[changed]
         if state in values:
             raise UsageError(f"{quote(state)} is given too", where, "one of them")
     return x
 
 
-def _refuse_lanes(module: GeneratedModule, parameters: Any, given: Iterable[str]) -> None:
-    """Refuse one lane of a bank's state, and say how all of them are given."""
-    found = {record.name: record.bank for record in module.STATES if record.bank}
-    for word in map(str, given):
-        base, _, lane = word.rpartition("_")
-        if base in found and lane.isdigit():
-            size = lanes(parameters, found[base])
-            remedy = (
-                f"give {base} one number, or a list of {size}, on a command line {base}=1,2,..."
-            )
-            raise UsageError(f"{quote(word)} is one lane of a bank", WHERE, "all lanes", remedy)
+def _refuse_single_lanes(module: GeneratedModule, parameters: Any, given: Iterable[str]) -> None:
+    """Raise `UsageError` for a name such as phi_2: the lanes of a bank are given together."""
+    banks = {record.name: record.bank for record in module.STATES if record.bank}
+    for name in map(str, given):
+        base, _, lane = name.rpartition("_")
+        if base in banks and lane.isdigit():
+            numbers = f"one number, or a list of {lanes(parameters, banks[base])}"
+            remedy = f"give {base} {numbers}, on a command line {base}=1,2,..."
+            raise UsageError(f"{quote(name)} is one lane of a bank", WHERE, "all lanes", remedy)
 
 
 def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> FloatArray:
@@ -137,35 +134,30 @@ def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> Floa
 def sample_times(
     times: object, step: float | None, duration: float, start: float = 0.0
 ) -> FloatArray:
-    """Return the times (nt,) of the samples [s]; left out, with `step`, they are ends of steps."""
+    """Return the times (nt,) of the samples [s]; ends of steps, where `times` is left out."""
     if step is not None and not duration / step <= MOST_STEPS:
         what = f"{step:g} s is too short a step for {duration:g} s: a run of over 10^11 steps"
         raise UsageError(what, "simulate.step", f"at least {duration / MOST_STEPS:.1g} s")
     if step is not None and step > duration * (1 + CLOSE):
         what = f"{step:g} s is longer than the run"
         raise UsageError(what, "simulate.step", f"at most {duration:g} s")
-    if times is not None or step is None:
-        return read_times(times, duration, start)
-    steps = int(np.ceil(duration / step * (1 - CLOSE)))
-    apart = -(-steps // (SAMPLES - 1)) * step
-    even = apart * np.arange(int(duration / apart * (1 - CLOSE)) + 1)
-    return np.append(start + even, start + duration)
-
-
-def read_times(given: object, duration: float, start: float = 0.0) -> FloatArray:
-    """Return the times (nt,) of the samples [s]: even ones, or those a user gave."""
     where, end = "simulate.times", start + duration
-    if given is None:
+    if times is None and step is not None:
+        steps = int(np.ceil(duration / step * (1 - CLOSE)))
+        apart = -(-steps // (SAMPLES - 1)) * step
+        even = apart * np.arange(int(duration / apart * (1 - CLOSE)) + 1)
+        return np.append(start + even, end)
+    if times is None:
         return np.linspace(start, end, SAMPLES)
-    if is_number(given) or isinstance(given, bool):
-        return np.linspace(start, end, whole(given, where, 2))
-    times = vector(given, where)
+    if is_number(times) or isinstance(times, bool):
+        return np.linspace(start, end, integer(times, where, 2))
+    given = vector(times, where)
     late = end + CLOSE * max(abs(end), duration)
-    times = increasing(np.where(times <= late, np.minimum(times, end), times), where)
-    if not times.size or times[0] < start or times[-1] > end:
-        span = f"times span {times[0]:g} s to {times[-1]:g} s" if times.size else "no times"
+    given = increasing(np.where(given <= late, np.minimum(given, end), given), where)
+    if not given.size or given[0] < start or given[-1] > end:
+        span = f"times span {given[0]:g} s to {given[-1]:g} s" if given.size else "no times"
         raise UsageError(span, where, f"times within {start:g} s to {end:g} s")
-    return times
+    return given
 
 
 WHERE = "simulate.initial"
@@ -200,15 +192,15 @@ def start_of(
     used: dict[str, Any] = {}
     for name, value in run.attrs.items():
         if str(name).startswith(PARAMETER):
-            word = str(name).removeprefix(PARAMETER)
-            used[word] = int(value) if word.endswith("_count") else np.asarray(value).tolist()
+            key = str(name).removeprefix(PARAMETER)
+            used[key] = int(value) if key.endswith("_count") else np.asarray(value).tolist()
     return float(last.time) if start is None else start, state, {**used, **(parameters or {})}
 
 
-def put_temperature(
+def set_temperature(
     module: GeneratedModule, p: Any, x: FloatArray, body: int, value: object, where: str
 ) -> int:
-    """Put the entropy at which a body has a temperature [K] into x (n,), and return its row.
+    """Set the entropy in x (n,) so that a body has this temperature [K]; return the entropy's row.
 
     Raises
     ------
@@ -222,10 +214,10 @@ def put_temperature(
 
 
 def entropy_row(module: GeneratedModule, p: Any, x: FloatArray, body: int) -> int:
-    """Return the row that moves a body's temperature most, for equal relative moves."""
+    """Return the row of x (n,) that changes a body's temperature most, by equal relative steps."""
     step = 1e-6 * np.maximum(np.abs(x), 1.0)
-    moved = module.temperatures(x[:, None] + np.diag(step), p)[body]
-    return int(np.argmax(np.abs(moved - module.temperatures(x, p)[body])))
+    changed = module.temperatures(x[:, None] + np.diag(step), p)[body]
+    return int(np.argmax(np.abs(changed - module.temperatures(x, p)[body])))
 
 
 def _entropy_at(

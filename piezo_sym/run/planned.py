@@ -1,8 +1,8 @@
-"""A run that is ready to go: its system, start and method; and its Dataset.
+"""A prepared run: its system, start and method; and its Dataset.
 
-Input: what `simulate` has read.  Output: the samples at any times, and the Dataset of a run, with
-its events if there are any.  An error, or Ctrl-C, brings the Dataset so far; the error of a run in
-C says which condition of the domain the state leaves, when, and with which values.
+Input: the checked arguments of `simulate`.  Output: the samples at any times, and the Dataset of
+the run with its events.  An error, or Ctrl-C, has the Dataset up to then; the error of a run in C
+says which condition of the domain the state violates, when, and with which values.
 """
 
 from __future__ import annotations
@@ -15,30 +15,30 @@ import numpy as np
 
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.collocation import METHOD, FixedStep, Watch, choice, collocate
+from piezo_sym.run.collocation import METHOD, FixedStep, Watch, collocate, stages_for
 from piezo_sym.run.dataset import Trajectory, element_variables, to_dataset
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import Engine
-from piezo_sym.run.events import Watched, event_variables, look
+from piezo_sym.run.events import Watched, event_variables, locate
 from piezo_sym.run.guard import SLACK, check_inputs, check_start
 from piezo_sym.run.inputs import InputValue, read_inputs
 from piezo_sym.run.method import ChosenMethod
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue, read_initial
-from piezo_sym.run.scipy_runs import by_scipy, cause
+from piezo_sym.run.scipy_runs import by_scipy, stop_cause
 from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
     import xarray
 
-#: No better accuracy is asked for: round-off is all that would be left.
+#: Below this rtol of the discrete gradient, errors are round-off.
 LEAST_RTOL = 1e-12
 
 
 @final
 @dataclass(frozen=True)
 class Request:
-    """What a user wants to be run, but when and from where."""
+    """The arguments of a run, except for its time and its start."""
 
     module: GeneratedModule
     parameters: Any
@@ -49,12 +49,12 @@ class Request:
     starts: bool  # whether the first step after a jump of the inputs is dissipative
     watch: Watch | None
     outputs: tuple[str, ...] = ()  # quantities of elements
-    slack: float = SLACK  # of limits that the start has to keep
+    slack: float = SLACK  # of the stops' limits at the start
 
     def planned(
         self, start: float, duration: float, state: Mapping[str, LaneValue] | None
     ) -> PlannedRun:
-        """Return the run from a time and a state, both checked."""
+        """Return the run from a time [s] and a state, and check that it can start there."""
         inputs = read_inputs(self.module, self.inputs, duration, start)
         system = DrivenModule(self.module, self.parameters, inputs)
         x = read_initial(self.module, self.parameters, inputs.segments[0].at(start), state)
@@ -71,52 +71,52 @@ class PlannedRun:
     system: DrivenModule
     x: FloatArray
 
-    def go(self, samples: FloatArray) -> tuple[Trajectory, dict[str, object]]:
-        """Return the run at its samples (nt,), and what it took; an error holds what it reached."""
+    def run(self, samples: FloatArray) -> tuple[Trajectory, dict[str, object]]:
+        """Return the run at its samples (nt,), and its work; an error has the samples reached."""
         request, system, x = self.request, self.system, self.x
         if request.chosen.engine:
             return compiled_run(request, request.chosen.engine, system, x, samples)
         return by_scipy(system, x, samples, request.chosen.method, request.rtol, request.watch)
 
     def dataset(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
-        """Return the run as a Dataset, with its events; `partial` of an error is that so far."""
+        """Return the run as a Dataset with its events; `partial` of an error is that so far."""
         try:
             if watched:
-                return self._watched(samples, watched)
-            trajectory, work = self.go(samples)
+                return self._dataset_with_events(samples, watched)
+            trajectory, work = self.run(samples)
         except (RunError, KeyboardInterrupt) as stopped:
             times, seen = getattr(stopped, "reached", None) or (samples[:0], None)
             if seen is not None and times.size:
                 why = str(stopped) or "stopped by the user"
-                vars(stopped)["partial"] = self._made(times, seen, {"stopped": why})
+                vars(stopped)["partial"] = self._dataset_of(times, seen, {"stopped": why})
             raise
-        return self._made(samples, trajectory, work)
+        return self._dataset_of(samples, trajectory, work)
 
-    def _made(
+    def _dataset_of(
         self, times: FloatArray, trajectory: Trajectory, attrs: dict[str, object]
     ) -> xarray.Dataset:
         chosen = self.request.chosen
-        told = {"method": chosen.method, **attrs, "engine": chosen.note}
-        asked = element_variables(self.system, trajectory, self.request.outputs)
-        return to_dataset(self.system, times, trajectory, told, asked)
+        attrs = {"method": chosen.method, **attrs, "engine": chosen.note}
+        outputs = element_variables(self.system, trajectory, self.request.outputs)
+        return to_dataset(self.system, times, trajectory, attrs, outputs)
 
-    def _watched(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
+    def _dataset_with_events(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
         failed: list[RunError] = []
         work: dict[str, object] = {}
 
         def run(times: FloatArray) -> tuple[FloatArray, Trajectory]:
             try:
-                found, told = self.go(times)
-                work.update(told)
-                return times, found
+                trajectory, attrs = self.run(times)
             except RunError as error:
                 if error.reached is None:
                     raise
                 failed[:] = [error]
-                times, found = error.reached
-                return times, found
+                times, trajectory = error.reached
+            else:
+                work.update(attrs)
+            return times, trajectory
 
-        located = look(self.system, watched, samples, run(samples)[1].steps, run)
+        located = locate(self.system, watched, samples, run(samples)[1].steps, run)
         if located.end is None and failed:
             run(samples)
             raise failed[0]
@@ -125,33 +125,33 @@ class PlannedRun:
             kept = np.append(samples[samples < located.end], located.end)
             work["stopped"] = f"{watched.condition} at t = {located.end:.9g} s"
         times, seen = run(np.unique(np.concatenate([kept, *located.times.values()])))
-        made = self._made(kept, seen.at(np.searchsorted(times, kept)), work)
-        return made.assign(dict(event_variables(self.system, located, times, seen)))
+        dataset = self._dataset_of(kept, seen.at(np.searchsorted(times, kept)), work)
+        return dataset.assign(dict(event_variables(self.system, located, times, seen)))
 
 
 def compiled_run(
     request: Request, engine: Engine, system: DrivenModule, x: FloatArray, samples: FloatArray
 ) -> tuple[Trajectory, dict[str, object]]:
-    """Return a run in C, with a fixed step or a tolerance, and what it took."""
+    """Return a run in C, with a fixed step or a tolerance, and its work."""
     step = request.step
     if request.starts:
         _check_dissipative(engine, step)
     try:
         check_inputs(system, x, samples)
-    except RunError as left:
-        left.reached = _until(left.time, request, system, x, samples)
+    except RunError as error:
+        error.reached = _run_before(error.time, request, system, x, samples)
         raise
     rtol = max(request.rtol, LEAST_RTOL)
-    accuracy: dict[str, object] = {"rtol": rtol, "order": 2 * choice(rtol)[0]}
+    accuracy: dict[str, object] = {"rtol": rtol, "order": 2 * stages_for(rtol)[0]}
     try:
         if step:
             accuracy = {"step": step.length, "order": step.order}
         given = [system], engine, x[None], samples, step or rtol, request.watch
         trajectory = collocate(*given, starts=request.starts).trajectory(0)
     except RunError as stopped:
-        found = cause(system, x, samples, stopped)
-        found.reached = stopped.reached
-        raise found from stopped
+        cause = stop_cause(system, x, samples, stopped)
+        cause.reached = stopped.reached
+        raise cause from stopped
     work = {
         "accepted_steps": trajectory.steps,
         "newton_iterations": trajectory.evaluations,
@@ -160,18 +160,21 @@ def compiled_run(
     return trajectory, {"method": METHOD, **accuracy, **work}
 
 
-def _until(
-    left: float, request: Request, system: DrivenModule, x: FloatArray, samples: FloatArray
+def _run_before(
+    end: float, request: Request, system: DrivenModule, x: FloatArray, samples: FloatArray
 ) -> tuple[FloatArray, Trajectory]:
-    """Return a run to the last sample before its inputs leave the domain; its own error counts."""
-    before = samples[samples < left]
-    inside = (float(before[-1]) + left) / 2 - system.inputs.start
-    shorter = replace(system, inputs=replace(system.inputs, duration=inside))
-    return before, PlannedRun(request, shorter, x).go(before)[0]
+    """Return a run to the last sample before its inputs leave the domain at `end` [s].
+
+    An error before then replaces that of the inputs.
+    """
+    before = samples[samples < end]
+    duration = (float(before[-1]) + end) / 2 - system.inputs.start
+    shorter = replace(system, inputs=replace(system.inputs, duration=duration))
+    return before, PlannedRun(request, shorter, x).run(before)[0]
 
 
 def _check_dissipative(engine: Engine, step: FixedStep | None) -> None:
-    """Raise `UsageError` if there is no store to damp, no body to take the loss, or no step."""
+    """Raise `UsageError` if there is no storage to damp, no body to heat, or no fixed step."""
     where = "simulate.dissipative_start"
     if not is_lossy(engine):
         what = f"model '{engine.module.NAME}' has no thermal_mass to take a loss, or no storage"

@@ -1,10 +1,8 @@
-"""What a Stepper steps: plants, each one model with its parameters and its record in C.
+"""The plants of a Stepper: each a model with its parameters and its record in C.
 
-Input: what a user gave for parameters, inputs and quanta; a driven module, its engine, its state at
-t = 0, and how it steps.  Output: these checked; `Plant`, which owns the arrays that C works on.
+Input: a user's parameters, inputs and quanta; a driven module, its engine, its state at t = 0, and
+the options of steps.  Output: the arguments checked; `Plant`, which owns the arrays that C uses.
 """
-
-from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
@@ -15,7 +13,7 @@ import numpy as np
 from piezo_sym.errors import PiezoError, RunError, UsageError
 from piezo_sym.run.checks import FloatArray, known_keys, positive
 from piezo_sym.run.collocation import layout_of
-from piezo_sym.run.dataset import Known, Trajectory
+from piezo_sym.run.dataset import Evaluation, Trajectory
 from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.records import POINTER, at, c_record
@@ -32,16 +30,16 @@ Given: TypeAlias = Mapping[str, LaneValue]
 def read_plants(module: GeneratedModule, given: Given | Sequence[Given] | None) -> list[Any]:
     """Return the parameters of each plant; raise `UsageError` if their states differ in number."""
     each = given if isinstance(given, Sequence) else [given]
-    found = [read_parameters(module, one) for one in each]
-    if len({tuple(lanes(one, bank) for bank in module.BANKS) for one in found}) == 1:
-        return found
-    what = "banks differ in size" if found else "there is no plant"
+    plants = [read_parameters(module, values) for values in each]
+    if len({tuple(lanes(p, bank) for bank in module.BANKS) for p in plants}) == 1:
+        return plants
+    what = "banks differ in size" if plants else "there is no plant"
     expected = "one mapping per plant, equal in the sizes of banks"
     raise UsageError(what, "Stepper.parameters", expected)
 
 
 def read_held(module: GeneratedModule, given: Mapping[str, float] | None, step: float) -> Inputs:
-    """Return the inputs at t = 0; raise `UsageError` if one is more than a number."""
+    """Return the inputs at t = 0; raise `UsageError` if one is not a number."""
     known = read_inputs(module, given, step)
     for record, signal in zip(module.INPUTS, known.signals, strict=True):
         if not isinstance(signal, Constant):
@@ -53,7 +51,7 @@ def read_held(module: GeneratedModule, given: Mapping[str, float] | None, step: 
 def read_quanta(
     given: Mapping[str, float] | None, states: tuple[str, ...], outputs: tuple[str, ...]
 ) -> tuple[FloatArray | None, FloatArray | None]:
-    """Return the quanta of x (n,) and y (ports,), 0 where there is none; None without any."""
+    """Return the quanta of x (n,) and of y (ports,), 0 for rows without one; None if all are."""
     where = "Stepper.quantum"
     known = known_keys(given, (*states, *outputs), where)
     sizes = {name: positive(value, f"{where}.{name}") for name, value in known.items()}
@@ -63,12 +61,12 @@ def read_quanta(
 
 @final
 class Plant:
-    """One model that goes step by step: the inputs u (m,) are held in each.
+    """One model that goes step by step, its inputs held in each.
 
     Attributes
     ----------
     start : the state (n,) at t = 0.
-    u, y : what C reads, (m,), and writes, (ports,).
+    u, y : the inputs (m,) that C reads, and the outputs (ports,) that it writes.
     """
 
     def __init__(
@@ -96,7 +94,7 @@ class Plant:
         self._functions = [ctypes.cast(engine.function(name), POINTER) for name in named]
 
     def record(self, steps: int, plants: int) -> Any:
-        """Return MODEL(stepper), the first of some plants, with so many steps at a call."""
+        """Return MODEL(stepper) for the first of `plants` plants, with `steps` steps per call."""
         batch = self._batch
         return c_record("stepper")(
             *(batch.address, batch.run, batch.inputs.segments[0].signals),
@@ -105,9 +103,9 @@ class Plant:
             *(self._conditions.size, steps, plants),
         )
 
-    def function(self, word: str) -> Any:
-        """Return one of the functions of C by its own name."""
-        return self._batch.function(word)
+    def function(self, name: str) -> Any:
+        """Return the C function MODEL(name)."""
+        return self._batch.function(name)
 
     @property
     def x(self) -> FloatArray:
@@ -116,25 +114,25 @@ class Plant:
         return x
 
     def check(self, x: FloatArray) -> None:
-        """Raise `RunError` if this is no state to start from."""
+        """Raise `RunError` if the plant cannot start from the state x (n,)."""
         check_start(self._system, x)
 
     def reset(self) -> None:
-        """Go back to the start, with an empty ledger; C has to forget the last step."""
+        """Go back to the start, with an empty ledger; MODEL(forget) does the rest."""
         self._batch.x[0] = self.start
         self._batch.largest[0] = np.abs(self.start)
         self._batch.ledgers[:] = 0.0
 
     def ledger(self, taken: int) -> dict[str, FloatArray]:
-        """Return what is booked so far, by the names of `simulate`."""
+        """Return the ledger after `taken` calls, by the names of `simulate`."""
         x, u = self._batch.x[0][:, None], self.u[:, None]
         sums = self._batch.ledgers[0, 0][:, None]
         past = Trajectory(self.start, x, u, sums, taken, 0)
-        found = Known.of(self._system, past).ledger()
-        return {name: values[0].copy() for name, (_, values, _) in found}
+        ledger = Evaluation.of(self._system, past).ledger()
+        return {name: values[0].copy() for name, (_, values, _) in ledger}
 
     def refusal(self, t: float) -> PiezoError:
-        """Return why C took no step at t [s]: the last inputs, or the state."""
+        """Return why C took no step at t [s]: the inputs, or the state."""
         margins = self._margins[self._conditions]
         if not np.all((margins > 0) | ((margins == 0) & (self._strict == 0))):  # nan lies outside
             return domain_error(self._system, t, self._batch.x[0], self.u)
@@ -143,5 +141,5 @@ class Plant:
 
 
 def calls_of(plants: Sequence[Plant], steps: int) -> Any:
-    """Return MODEL(stepper) of each plant, one behind the other; so many steps at a call."""
+    """Return an array of each plant's MODEL(stepper), with `steps` steps per call."""
     return (c_record("stepper") * len(plants))(*(one.record(steps, len(plants)) for one in plants))

@@ -24,15 +24,15 @@ from piezo_sym.run.checks import FloatArray, increasing, vector
 from piezo_sym.run.signals import MOST_CORNERS, Signal
 
 DELIMITERS = ",;\t"
-#: Units of temperatures in headers that have an offset, and where their zero is [K].
+#: The unit of temperature with an offset in headers, and its zero [K].
 CELSIUS, ZERO_CELSIUS = ("degC", "\N{DEGREE SIGN}C"), 273.15
 HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its unit, t [ms]
 OTHERWISE = re.compile(  # t (ms), t/ms
     r"(?P<name>.*?)\s*(?:\((?P<unit>[^()]+)\)|/\s*(?P<over>[^/()]+))"
 )
-#: Ends of names that are meant as units.
+#: Endings of names that are meant as units.
 TIMES, VALUES = ("ns", "us", "ms", "min"), ("mV", "kV", "uA", "mA", "um", "mm", "mN", "kN", "degC")
-SLACK = 1e-9  # of the duration: a last sample may fall short by rounding
+SLACK = 1e-9  # of the duration: by rounding, samples may span less
 
 
 @final
@@ -40,9 +40,9 @@ SLACK = 1e-9  # of the duration: a last sample may fall short by rounding
 class Samples(Signal):
     """Straight lines between samples; see `samples`.
 
-    Of those from a file, `unit` is the SI unit that its header says of the values, and `assumed`
-    what was taken because it says nothing: "t in s and V in the input's SI unit"; `source` is the
-    file, and the column.
+    Of samples from a file, `unit` is the SI unit of the values by its header, `assumed` lists the
+    units that the header does not give: "t in s and V in the input's SI unit", and `source` is the
+    file and the column.
     """
 
     times: FloatArray
@@ -66,7 +66,7 @@ class Samples(Signal):
         return jumps
 
     def max_step(self, duration: float) -> float:
-        """Return the median distance of the samples when they are many, otherwise infinity."""
+        """Return the median distance of samples that are too many for breaks, else infinity."""
         knots = self.knots(duration)
         return float(np.median(np.diff(knots))) if knots.size > MOST_CORNERS else inf
 
@@ -81,12 +81,13 @@ def samples(times: ArrayLike, values: ArrayLike) -> Samples:
 
     Parameters
     ----------
-    times : increasing [s], shape (n,), n >= 2; one that stands twice is a jump.
+    times : increasing [s], shape (n,), n >= 2; a time given twice is a jump.
     values : in the SI unit of the input, shape (n,).
 
     Raises
     ------
-    UsageError : an entry is not a finite number, lengths differ, times fall, or one stands thrice.
+    UsageError : an entry is not a finite number, lengths differ, times decrease, or one is given
+        three times.
     """
     return read_samples(times, values, "samples")
 
@@ -112,9 +113,9 @@ def samples_from_csv(
 ) -> Samples:
     """Return the samples in a delimited text file (comma, semicolon or tab) with a header.
 
-    A header such as ``t [ms],V_in [V]``, ``t (ms)`` or ``t/ms`` says the units: times and values
-    are converted to SI, and a run refuses values whose unit is not of its input's dimension.
-    Without units, times are in s, and values in the SI unit of the input.
+    A header such as ``t [ms],V_in [V]``, ``t (ms)`` or ``t/ms`` gives the units: times and values
+    are converted to SI, and a run refuses values whose dimension is not that of its input. Without
+    units, times are in s, and values in the SI unit of the input.
 
     Parameters
     ----------
@@ -126,39 +127,39 @@ def samples_from_csv(
     Raises
     ------
     FileError : the file cannot be read, or a cell is not a finite number.
-    UsageError : no column has that header, a unit is not known or not of a time, or the times do
+    UsageError : no column has that header, a unit is unknown or no unit of time, or the times do
         not increase.
     """
     headers = column_headers(path)
-    t = 0 if time_column is None else _position(headers, time_column, f"{path}.time_column")
-    x = _other_column(headers, t, path) if column is None else _position(headers, column, str(path))
+    t = 0 if time_column is None else _index_of(headers, time_column, f"{path}.time_column")
+    x = _other_column(headers, t, path) if column is None else _index_of(headers, column, str(path))
     times, values = _columns(Path(path), t, x)
     seconds, _ = _factor(headers[t], f"{path}, header", "s")
     factor, unit = _factor(headers[x], f"{path}, header")
     values = values * factor + (ZERO_CELSIUS if headers[x][1] in CELSIUS else 0.0)
-    words = (t, "s"), (x, "the input's SI unit")
     for n, ends in ((t, TIMES), (x, VALUES)):
         _refuse_suffix(*headers[n], ends, f"{path}, header")
-    taken = [f"{headers[n][0]} in {unit}" for n, unit in words if not headers[n][1]]
-    found = read_samples(times * seconds, values, str(path))
+    defaults = (t, "s"), (x, "the input's SI unit")
+    assumed = [f"{headers[n][0]} in {default}" for n, default in defaults if not headers[n][1]]
+    signal = read_samples(times * seconds, values, str(path))
     source = f"{path}, column {quote(headers[x][0])}"
-    return replace(found, unit=unit, assumed=" and ".join(taken), source=source)
+    return replace(signal, unit=unit, assumed=" and ".join(assumed), source=source)
 
 
 def header_of(name: object, unit: str) -> str:
-    """Return the header of a column as `samples_from_csv` reads it; "1" is not written."""
+    """Return the header of a column as `samples_from_csv` reads it; unit "1" is left out."""
     return f"{name}" if unit == "1" else f"{name} [{unit}]"
 
 
 def column_headers(path: str | PathLike[str]) -> list[tuple[str, str]]:
-    """Return the names and units in the header of a delimited text file, "" where none is said."""
-    with _opened(Path(path)) as (header, _, _):
+    """Return the names and units in the header of a delimited text file; "" for no unit."""
+    with _open(Path(path)) as (header, _, _):
         return header
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[tuple[list[tuple[str, str]], str, Iterator[list[str]]]]:
-    """Give header, delimiter and rows of a delimited text file; raise `FileError` otherwise."""
+def _open(path: Path) -> Iterator[tuple[list[tuple[str, str]], str, Iterator[list[str]]]]:
+    """Yield header, delimiter and rows of a delimited text file; raise `FileError` otherwise."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             first = file.readline()
@@ -169,7 +170,7 @@ def _opened(path: Path) -> Iterator[tuple[list[tuple[str, str]], str, Iterator[l
             if all(_is_number(name) for name in names):
                 what = "line 1 has numbers where names are expected"
                 raise FileError(what, str(path), "a header line, such as t [s],V_in [V]")
-            header = [_named(name.strip()) for name in names]
+            header = [_name_and_unit(name.strip()) for name in names]
             rows = csv.reader(file, delimiter=delimiter, skipinitialspace=True)
             yield header, delimiter, rows
     except OSError as cause:
@@ -179,8 +180,8 @@ def _opened(path: Path) -> Iterator[tuple[list[tuple[str, str]], str, Iterator[l
         raise FileError("is not text in UTF-8", str(path), remedy="save it as UTF-8") from cause
 
 
-def _named(text: str) -> tuple[str, str]:
-    """Return the name and the unit in a header: t [ms], and t (ms) or t/ms if that is a unit."""
+def _name_and_unit(text: str) -> tuple[str, str]:
+    """Return the name and the unit in a header: t [ms]; t (ms) or t/ms, where ms is a unit."""
     if match := HEADER.fullmatch(text):
         return match["name"], match["unit"].strip()
     if match := OTHERWISE.fullmatch(text):
@@ -191,7 +192,7 @@ def _named(text: str) -> tuple[str, str]:
 
 
 def _is_unit(text: str) -> bool:
-    """Return whether a text is meant as a unit: also degC, and what is not ASCII, which say why."""
+    """Return whether a text is meant as a unit; also degC and non-ASCII units, refused later."""
     from piezo_sym.expressions.units import parse_unit
 
     try:
@@ -210,13 +211,13 @@ def _is_number(text: str) -> bool:
 
 
 def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
-    """Return two columns as numbers; raise `FileError` at the first cell that is none."""
+    """Return two columns as numbers; raise `FileError` at the first cell that is not a number."""
     import pandas
 
-    with _opened(path) as (header, delimiter, rows), warnings.catch_warnings():
+    with _open(path) as (header, delimiter, rows), warnings.catch_warnings():
         warnings.simplefilter("error")
-        with suppress(ValueError, Warning):  # pandas does not say where; the rows one by one do
-            with path.open(encoding="utf-8-sig") as lines:  # it drops what has no header
+        with suppress(ValueError, Warning):  # the loop below finds the place of the error
+            with path.open(encoding="utf-8-sig") as lines:  # pandas drops cells without header
                 if any(line.count(delimiter) >= len(header) for line in lines):
                     raise ValueError("cells without header")
             how: Any = {"index_col": False, "dtype": float, "na_filter": False, "usecols": [t, x]}
@@ -225,14 +226,14 @@ def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
             both = table.to_numpy()[:, [0, 1] if t < x else [1, 0]]
             if np.isfinite(both).all():
                 return both[:, 0], both[:, 1]
-        filled = ((line, row) for line, row in enumerate(rows, start=2) if row)
-        cells = (_cell(row, n, path, line, len(header)) for line, row in filled for n in (t, x))
+        numbered = ((line, row) for line, row in enumerate(rows, start=2) if row)
+        cells = (_cell(row, n, path, line, len(header)) for line, row in numbered for n in (t, x))
         both = np.fromiter(cells, dtype=float).reshape(-1, 2)
         return both[:, 0], both[:, 1]
 
 
 def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[float, str]:
-    """Return what turns a column into SI, and its SI unit; it has to be like `expected`."""
+    """Return the factor of a column's unit to SI, and its SI unit; `expected` is a like unit."""
     from piezo_sym.expressions.units import parse_unit
 
     name, text = header
@@ -251,17 +252,17 @@ def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[fl
 
 
 def _refuse_suffix(name: str, unit: str, ends: Collection[str], where: str) -> None:
-    """Refuse a header that says no unit, but whose name ends in one, as t_ms and t in ms do."""
+    """Raise `UsageError` for a header without unit whose name ends in one: t_ms, t in ms."""
     start, _, end = re.sub(r"( in)?\s+", "_", name).rpartition("_")
     if start and not unit and end in ends:
         what = f"{quote(name)} is a name without a unit that ends in one"
         raise UsageError(what, where, remedy=f"write {quote(f'{start} [{end}]')}, or another name")
 
 
-def _position(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> int:
-    name, said = _named(wanted.strip())
-    names = [f"{name} [{unit}]" if said and unit else name for name, unit in headers]
-    wanted = f"{name} [{said}]" if said else wanted
+def _index_of(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> int:
+    name, wanted_unit = _name_and_unit(wanted.strip())
+    names = [f"{name} [{unit}]" if wanted_unit and unit else name for name, unit in headers]
+    wanted = f"{name} [{wanted_unit}]" if wanted_unit else wanted
     if wanted not in names:
         raise UsageError(f"no column {quote(wanted)}", where, remedy=nearest(str(wanted), names))
     if names.count(wanted) > 1:
@@ -279,12 +280,13 @@ def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> i
     return others[0]
 
 
-def _cell(row: Sequence[str], at: int, path: Path, line: int, most: int) -> float:
-    text = row[at].strip() if at < len(row) else ""
+def _cell(row: Sequence[str], n: int, path: Path, line: int, columns: int) -> float:
+    """Return cell n of a row as a number; raise `FileError` otherwise."""
+    text = row[n].strip() if n < len(row) else ""
     where = f"{path}, line {line}"
-    if any(cell.strip() for cell in row[most:]):
+    if any(cell.strip() for cell in row[columns:]):
         remedy = "write decimals with a point, and a name for each column into the header"
-        raise FileError(f"has {len(row)} cells", where, f"{most}", remedy)
+        raise FileError(f"has {len(row)} cells", where, f"{columns}", remedy)
     try:
         value = float(text.replace("_", "x"))  # 1_0 is a number in Python alone
     except ValueError as cause:

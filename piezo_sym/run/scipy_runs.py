@@ -1,15 +1,13 @@
-"""Runs by SciPy's solvers: as `simulate` gives them, coarse ones for scales, and to find causes.
+"""Runs by SciPy's solvers: for `simulate`, for the scales of states, and to explain errors in C.
 
-Input: a `DrivenModule` and the state x (n,) at t = 0.  Output: a `Trajectory` and what it took; the
-largest magnitude of each state, so that absolute tolerances fit its unit; or the error that says
-why a run in C stopped.
+Input: a `DrivenModule` and the state x (n,) at t = 0.  Output: a `Trajectory` and its work; the
+largest magnitude of each state, for absolute tolerances; or the error that says why a run in C
+stopped.
 
-The ledger is integrated by Gauss-Legendre quadrature on the solver's interpolants, between any two
-ends of steps and samples.  Some steps are looked at together, so memory grows with the samples, not
-with the steps.
+The ledger is integrated by Gauss-Legendre quadrature on the solver's interpolants, between
+neighbouring ends of steps and samples.  Steps are evaluated in groups, so memory grows with the
+samples, not with the steps.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -26,21 +24,21 @@ from piezo_sym.run.collocation import Watch
 from piezo_sym.run.dataset import Trajectory
 from piezo_sym.run.guard import crossing, domain_error, rate_error
 from piezo_sym.run.inputs import Segment
-from piezo_sym.run.integrate import Tolerance, accepted
+from piezo_sym.run.integrate import Tolerance, accepted_steps
 from piezo_sym.run.system import DrivenModule
 
 #: Absolute tolerances: this part of rtol times the scale of each state.
 ATOL_FACTOR = 1e-3
-NODES = 4  # of the quadrature, exact to degree 7: above every interpolant's own order
-#: Times looked at together, and numbers of state at them.
+NODES = 4  # of the quadrature, exact to degree 7: above the order of every interpolant
+#: The most times, and numbers of states, in a group.
 MOST_STOPS, MOST_NUMBERS = 512, 100_000
 #: Of the coarse run; ATOL is a part of the scale known so far.
 RTOL, ATOL = 1e-3, 1e-2
-GROWTH = 10.0  # a state that outgrows its scale so much gets a new one
-NEAR = 1e-9  # of a time: LSODA cannot start so near to its end
+GROWTH = 10.0  # of a state over its scale, at which the coarse run restarts with a new scale
+NEAR = 1e-9  # of a time: LSODA cannot start closer to its end
 MOST_STEPS = 50_000
 TRUSTED = 0.9
-#: How a run in C that stopped is looked at again: to find the cause, not to take its place.
+#: Tolerances and steps of the run that explains why a run in C stopped.
 LOOK_RTOL, LOOK_ATOL = 1e-8, 1e-11
 MOST_LOOKED = 20_000
 
@@ -48,7 +46,7 @@ MOST_LOOKED = 20_000
 @final
 @dataclass(frozen=True)
 class Path:
-    """Accepted steps in one segment, from edge to edge; or its start alone, the only edge."""
+    """Accepted steps in one segment, with ends `edges`; or its start, the only edge."""
 
     segment: Segment
     edges: FloatArray
@@ -57,7 +55,7 @@ class Path:
     evaluations: int = 0
 
     def stops(self, times: FloatArray) -> FloatArray:
-        """Return the ends of its steps, and those of some times that lie in them."""
+        """Return the ends of its steps, and the times that lie in them."""
         inner = times[(times > self.edges[0]) & (times <= self.edges[-1])]
         return np.union1d(self.edges[1:], inner) if self.edges.size > 1 else self.edges
 
@@ -74,10 +72,10 @@ def by_scipy(
     rtol: float,
     watch: Watch | None = None,
 ) -> tuple[Trajectory, dict[str, object]]:
-    """Return a run of one of SciPy's methods, and what it took; `watch` is told the time."""
+    """Return a run of one of SciPy's methods, and its work."""
     scale, spent = magnitudes(system, x)
     tolerance = Tolerance(method, rtol, rtol * ATOL_FACTOR * scale)
-    trajectory = recorded(system, x, paths(system, x, tolerance), samples, watch)
+    trajectory = record(system, x, solver_paths(system, x, tolerance), samples, watch)
     work = {
         "method": method,
         "rtol": rtol,
@@ -88,7 +86,7 @@ def by_scipy(
     return trajectory, work
 
 
-def recorded(
+def record(
     system: DrivenModule,
     start: FloatArray,
     run: Iterator[Path],
@@ -97,49 +95,49 @@ def recorded(
 ) -> Trajectory:
     """Return the trajectory at `times` (nt,) of a run from `start` (n,).
 
-    An error holds what was reached; `watch` is told the time that each path begins from.
+    An error has the samples reached; `watch` gets the time [s] at which each path begins.
     """
-    found = Trajectory.blank(system, start, times.size)
-    total, most = np.zeros(len(found.integrals)), stops_together(start)
+    result = Trajectory.blank(system, start, times.size)
+    total, most = np.zeros(len(result.integrals)), group_size(start)
     try:
         for path in run:
-            taken = found.steps + path.steps, found.evaluations + path.evaluations
-            found = replace(found, steps=taken[0], evaluations=taken[1])
+            steps, evaluations = result.steps + path.steps, result.evaluations + path.evaluations
+            result = replace(result, steps=steps, evaluations=evaluations)
             since = float(path.edges[0])
             if watch:
                 watch(since)
-            every = path.stops(times)
-            for stops in np.split(every, range(most, every.size, most)):
+            all_stops = path.stops(times)
+            for stops in np.split(all_stops, range(most, all_stops.size, most)):
                 sums = total[:, None] + np.cumsum(increments(system, path, since, stops), axis=1)
-                good = inside(system, path, stops)
-                kept = np.isin(stops, times) & (np.cumsum(~good) == 0)
+                valid = in_domain(system, path, stops)
+                kept = np.isin(stops, times) & (np.cumsum(~valid) == 0)
                 places = np.searchsorted(times, stops[kept])
-                found.states[:, places] = path.states(stops)[:, kept]
-                found.inputs[:, places] = path.segment.over(stops)[:, kept]
-                found.integrals[:, places] = sums[:, kept]
-                if not good.all():
-                    raise left(system, path, np.append(since, stops[: np.argmin(good) + 1]))
+                result.states[:, places] = path.states(stops)[:, kept]
+                result.inputs[:, places] = path.segment.over(stops)[:, kept]
+                result.integrals[:, places] = sums[:, kept]
+                if not valid.all():
+                    raise exit_error(system, path, np.append(since, stops[: np.argmin(valid) + 1]))
                 total, since = sums[:, -1], float(stops[-1])
     except (RunError, KeyboardInterrupt) as stopped:
-        vars(stopped)["reached"] = found.until(times)
+        vars(stopped)["reached"] = result.until(times)
         raise
-    return found
+    return result
 
 
-def stops_together(x: FloatArray) -> int:
-    """Return at how many times a run of states x (n,) is looked at together."""
+def group_size(x: FloatArray) -> int:
+    """Return the number of times in a group, for states x (n,)."""
     return max(1, min(MOST_STOPS, MOST_NUMBERS // x.size))
 
 
-def inside(system: DrivenModule, path: Path, stops: FloatArray) -> np.ndarray[Any, Any]:
-    """Return whether a run is in the domain, and has rates, at some times (k,)."""
+def in_domain(system: DrivenModule, path: Path, stops: FloatArray) -> np.ndarray[Any, Any]:
+    """Return whether a run is in the domain and has finite rates, at times (k,)."""
     x, u = path.states(stops), path.segment.over(stops)
     violated = np.any(system.violated(x, u), axis=0)
     return np.asarray(~violated & np.all(system.finite(x, u), axis=0))
 
 
-def left(system: DrivenModule, path: Path, stops: FloatArray) -> RunError:
-    """Return the error of a run that is not inside at the last of these times."""
+def exit_error(system: DrivenModule, path: Path, stops: FloatArray) -> RunError:
+    """Return the error of a run that leaves the domain between the last two of these times."""
     before, t = float(stops[-2]), float(stops[-1])
     if not np.any(system.violated(*path.point(t))):
         return rate_error(system, t, *path.point(t))
@@ -148,7 +146,7 @@ def left(system: DrivenModule, path: Path, stops: FloatArray) -> RunError:
 
 
 def increments(system: DrivenModule, path: Path, since: float, stops: FloatArray) -> FloatArray:
-    """Return the integrals from one time to the next, (integrals, k), the first from `since`."""
+    """Return the integrals (integrals, k) of the ledger from one time to the next, from `since`."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     starts = np.append(since, stops[:-1])
     t = starts[:, None] + (stops - starts)[:, None] * (nodes + 1) / 2
@@ -157,19 +155,19 @@ def increments(system: DrivenModule, path: Path, since: float, stops: FloatArray
     return np.asarray((stops - starts) * mean)
 
 
-def paths(system: DrivenModule, x: FloatArray, tolerance: Tolerance) -> Iterator[Path]:
-    """Yield a run from the state x (n,) at t = 0, some steps at once.
+def solver_paths(system: DrivenModule, x: FloatArray, tolerance: Tolerance) -> Iterator[Path]:
+    """Yield a run from the state x (n,) at t = 0, in groups of steps.
 
-    The start of each segment is a path of its own, so that its state and inputs are looked at
-    before a solver is.
+    The start of each segment is a path of its own, so that its state and inputs are checked before
+    a solver starts.
     """
     from scipy.integrate import OdeSolution
 
-    most = stops_together(x)
+    most = group_size(x)
     for segment in system.inputs.segments:
         still = partial(lambda x, t: np.repeat(x, t.size, axis=1), x[:, None])
         yield Path(segment, np.array([segment.start]), still)
-        solvers = accepted(system, segment, x, tolerance)
+        solvers = accepted_steps(system, segment, x, tolerance)
         end, spent, failed = segment.start, 0, None
         while end < segment.stop and not failed:
             edges, parts, taken, before = [end], [], 0, spent
@@ -177,7 +175,7 @@ def paths(system: DrivenModule, x: FloatArray, tolerance: Tolerance) -> Iterator
                 for solver in islice(solvers, most):
                     x, spent, taken = solver.y.copy(), solver.nfev, taken + 1
                     end = segment.stop if solver.status == "finished" else float(solver.t)
-                    if end > edges[-1]:  # no step that stands still
+                    if end > edges[-1]:  # not a step that leaves the time as it is
                         edges.append(end)
                         parts.append(solver.dense_output())
             except RunError as error:
@@ -192,10 +190,10 @@ def paths(system: DrivenModule, x: FloatArray, tolerance: Tolerance) -> Iterator
 def magnitudes(
     system: DrivenModule, x: FloatArray, most: int = MOST_STEPS
 ) -> tuple[FloatArray, int]:
-    """Return the scale of each state (n,), lanes of a bank sharing theirs, and the evaluations.
+    """Return the scale of each state (n,), one for all lanes of a bank, and the evaluations.
 
-    The coarse run takes at most `most` steps. Where it stops early, its last states may be on
-    their way to infinity: then only the first nine tenths of the time it reached count.
+    The coarse run takes at most `most` steps. If it stops early, its last states may grow without
+    bound: then only the first nine tenths of its time count.
     """
     start, duration = system.inputs.start, system.inputs.duration
     t, scale, evaluations = start, system.scale(x), 0
@@ -212,16 +210,16 @@ def magnitudes(
 
 
 def coarse_run(system: DrivenModule, x: FloatArray) -> Iterator[tuple[float, FloatArray, int]]:
-    """Yield time, scale met so far (n,) and cost of each step of a coarse run in the domain.
+    """Yield time, scale so far (n,) and evaluations of each step of a coarse run in the domain.
 
-    Nothing is known about the scales at first, so LSODA starts again where a state has outgrown
-    ten times the scale that its tolerance was made for.
+    The scales are unknown at first, so LSODA restarts where a state exceeds ten times the scale of
+    its tolerance.
     """
     scale = met = system.scale(x)
     for segment in system.inputs.segments:
         rest: Segment | None = segment
         while rest:
-            solvers = accepted(system, rest, x, Tolerance("LSODA", RTOL, ATOL * scale))
+            solvers = accepted_steps(system, rest, x, Tolerance("LSODA", RTOL, ATOL * scale))
             rest, spent = None, 0
             for solver in solvers:
                 t, x = float(solver.t), solver.y.copy()
@@ -235,23 +233,25 @@ def coarse_run(system: DrivenModule, x: FloatArray) -> Iterator[tuple[float, Flo
                     break
 
 
-def cause(system: DrivenModule, x: FloatArray, samples: FloatArray, stopped: RunError) -> RunError:
-    """Return why a run stopped: the condition that the state leaves, or else what it said itself.
+def stop_cause(
+    system: DrivenModule, x: FloatArray, samples: FloatArray, stopped: RunError
+) -> RunError:
+    """Return why a run in C stopped: the condition that the state violates, or else `stopped`.
 
-    Steps shrink towards the edge of the domain and do not reach it.  LSODA goes over the edge, and
-    so finds time and condition; where it finds none in its first steps, the run's own error stands.
+    Steps in C shrink towards the edge of the domain and do not reach it. LSODA goes over the edge,
+    and so finds the time and the condition.
     """
     scale, _ = magnitudes(system, x, MOST_LOOKED)
     tolerance = Tolerance("LSODA", LOOK_RTOL, LOOK_ATOL * scale)
     try:
-        recorded(system, x, going(paths(system, x, tolerance)), samples)
-    except RunError as found:
-        return found
+        record(system, x, until_stuck(solver_paths(system, x, tolerance)), samples)
+    except RunError as error:
+        return error
     return stopped
 
 
-def going(run: Iterator[Path]) -> Iterator[Path]:
-    """Yield a run for as long as its solver goes on, and not too long."""
+def until_stuck(run: Iterator[Path]) -> Iterator[Path]:
+    """Yield a run until its solver fails, or has taken `MOST_LOOKED` steps."""
     steps = 0
     with suppress(RunError):
         for path in run:

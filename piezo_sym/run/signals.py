@@ -1,4 +1,4 @@
-"""Signals: inputs as functions of time that know their corners and how fast they move.
+"""Signals: inputs as functions of time with their breaks and the longest step that resolves them.
 
 Input: a waveform's numbers (SI; frequencies in Hz).  Output: a frozen `Signal`, callable on t.
 """
@@ -14,7 +14,7 @@ import numpy as np
 from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, number, positive
 
-#: What makes signals: `piezo_sym.run` and the command line offer all of them.
+#: The signals that `piezo_sym.run` and the command line offer.
 __all__ = ["chirp", "ramp", "sine", "square", "step", "triangle"]
 
 MOST_CORNERS = 1000
@@ -28,16 +28,16 @@ class Signal(ABC):
 
     A solver restarts at `breaks`, where the signal or its slope jumps, and takes no step longer
     than `max_step`, so that it misses no period and no pulse. A new kind of signal is a class
-    below, whose numbers are checked as it is made, and its name in small letters in `__all__`.
+    below and its name in small letters in `__all__`.
     """
 
-    #: Whether there are no corners but breaks: steps with several stages may then be longer.
+    #: Whether it is smooth between breaks: steps with several stages may then be longer.
     _smooth: ClassVar[bool] = False
-    #: Which of its numbers are above 0; None where they are no numbers of a user.
+    #: The fields that must be above 0; None where no field is checked.
     _above_zero: ClassVar[tuple[str, ...] | None] = None
 
     def __post_init__(self) -> None:
-        """Take a user's numbers as finite floats."""
+        """Check the fields, and convert them to floats."""
         for field in fields(self) if self._above_zero is not None else ():  # type: ignore[arg-type]
             check = positive if field.name in (self._above_zero or ()) else number
             place = f"{type(self).__name__.lower()}.{field.name}"
@@ -56,7 +56,7 @@ class Signal(ABC):
 
     @property
     def _period(self) -> float:
-        """The shortest period [s]; infinity for what is not periodic."""
+        """The shortest period [s]; infinity if it is not periodic."""
         return inf
 
     def breaks(self, duration: float) -> tuple[float, ...]:
@@ -68,11 +68,11 @@ class Signal(ABC):
         return tuple(float(t) for t in self._corners(duration) if 0 < t < duration)
 
     def max_step(self, duration: float) -> float:  # noqa: ARG002
-        """Return the longest step [s] between breaks, of methods that sample it once per step."""
+        """Return the longest step [s] of methods that sample it once per step."""
         return self._period / STEPS_PER_PERIOD
 
     def longest_step(self, duration: float) -> float:
-        """Return the longest step [s] between breaks, of methods with several stages per step."""
+        """Return the longest step [s] of methods with several stages per step."""
         return 0.5 * self._period if self._smooth else self.max_step(duration)
 
 
@@ -87,9 +87,19 @@ class Constant(Signal):
         return np.full(np.shape(t), self.value)
 
 
+@dataclass(frozen=True)
+class _Wave(Signal):
+    """A periodic signal with an amplitude, a frequency and an offset."""
+
+    amplitude: float
+    frequency: float
+    offset: float = 0.0
+    _above_zero = ("frequency",)
+
+
 @final
 @dataclass(frozen=True)
-class Sine(Signal):
+class Sine(_Wave):
     """The signal offset + amplitude sin(2 pi frequency t + phase).
 
     Parameters
@@ -103,11 +113,8 @@ class Sine(Signal):
     UsageError : a number is not finite, or the frequency not positive.
     """
 
-    amplitude: float
-    frequency: float
-    offset: float = 0.0
     phase: float = 0.0
-    _smooth, _above_zero = True, ("frequency",)
+    _smooth = True
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         angle = 2 * pi * self.frequency * t + self.phase
@@ -178,16 +185,6 @@ class Ramp(Signal):
 
     def _corners(self, duration: float) -> Iterable[float]:  # noqa: ARG002
         return self.start, self.stop
-
-
-@dataclass(frozen=True)
-class _Wave(Signal):
-    """What is said of a periodic signal: its amplitude, frequency and offset."""
-
-    amplitude: float
-    frequency: float
-    offset: float = 0.0
-    _above_zero = ("frequency",)
 
 
 @final

@@ -1,7 +1,7 @@
 """`simulate`: run a generated module; the table of contents of this stage.
 
-Input: a generated module, and what the user wrote for inputs, parameters, initial state and times.
-Output: an `xarray.Dataset`.
+Input: a generated module, and a user's inputs, parameters, initial state and times.  Output: an
+`xarray.Dataset`.
 
     dx/dt = rhs(x, u(t), p)    U(t) - U(0) = sum over ports of int_0^t y u dt
                                S(t) - S(0) = entropy produced + entropy exchanged
@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
-from piezo_sym.run.collocation import METHOD, FixedStep, choice, read_order
+from piezo_sym.run.collocation import METHOD, FixedStep, read_order, stages_for
 from piezo_sym.run.dataset import read_outputs
 from piezo_sym.run.events import read_watched
 from piezo_sym.run.guard import slack_of
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import xarray
 
 RTOL = 1e-5
-#: A run is longer than so much of the time at which it starts: that has 16 digits.
+#: The least duration over the time at which a run starts, which has 16 digits.
 RESOLVED = 1e-11
 RTOL_LEAST, RTOL_MOST = 1e-13, 0.1
 
@@ -61,30 +61,30 @@ def simulate(
     """Run a model from `t0` and return all its quantities over time.
 
     The method is the discrete gradient, compiled, unless another is named. Both its balances close
-    to round-off at every sample, for the states given. With `rtol` it is Gauss collocation with
-    co-states' means over each step, of order six to ten: the largest error of a run is about rtol
-    of each state's largest magnitude (of a bank: of any lane). Steps end where a law has a kink or
-    a jump, or go over kinks where many lanes have some and rtol is 1e-6 or more. Errors of steps
-    add up where nothing damps them: what oscillates for hundreds of periods is off in phase by more
-    than rtol; and what is much faster than the steps may keep, after a jump, some tens of rtol. A
-    sample is the end of a step of its own, so that other `times` change no number at those that
-    both have, but where it would show less heat or entropy produced than the sample before. With
-    `step` the error falls with that power of the step that `order` says, where laws and inputs are
-    smooth; steps go over kinks; and what is much faster than a step rings from one to the next
-    after a jump, see `dissipative_start`.
+    to round-off at every sample, for the states returned. With `rtol` it is Gauss collocation with
+    mean co-states over each step, of order six to ten: the largest error of a run is about rtol
+    times each state's largest magnitude (of a bank: of any lane). Steps end where a law has a kink
+    or a jump, or go over kinks where many lanes have some and rtol is 1e-6 or more. Errors add up
+    where nothing damps them: after hundreds of periods an oscillation is off in phase by more than
+    rtol; and motions much faster than the steps may keep, after a jump, errors of some tens of
+    rtol. A sample is the end of a step of its own, so other `times` change no value at the times
+    that both have, except where heat or entropy produced would decrease between samples. With
+    `step` the order of the error is `order`, where laws and inputs are smooth; steps go over kinks;
+    and motions much faster than a step ring from step to step after a jump: see
+    `dissipative_start`.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
-    scale of the state, which is the largest magnitude that the state (for a bank: any of its
-    lanes) has in a coarse first run with rtol 1e-3, or 1e-15 if that is larger; of a coarse run
-    that stops early, the first nine tenths count.
+    scale of the state: its largest magnitude (for a bank: that of any lane) in a coarse first run
+    with rtol 1e-3, but at least 1e-15; of a coarse run that stops early, the first nine tenths
+    count.
 
-    Steps end at every jump or corner of an input (samples: while they are at most 1000). With
-    rtol, none is longer than a quarter of the run, than half a period of a sine or chirp (SciPy's:
-    an eighth), an eighth of one of a triangle, than the median distance of more than 1000 samples,
-    or than 1/500 of the run where an input is a function. A function is asked some thousand times
-    before the run, with an array where it takes one: for its jumps, and for polynomials that take
-    its place. A pulse that is shorter than 1/2000 of the run is seen only by chance: give a
-    signal, or (t, values).
+    Steps end at every jump or corner of an input (of samples: if they are at most 1000). With rtol,
+    no step is longer than a quarter of the run, half a period of a sine or chirp (SciPy's methods:
+    an eighth), an eighth of a period of a triangle, the median distance of more than 1000 samples,
+    or 1/500 of the run where an input is a function. A function is called some thousand times
+    before the run, with arrays if it takes them, to find its jumps and to approximate it by
+    polynomials. A pulse shorter than 1/2000 of the run is seen only by chance: give a signal, or
+    (t, values).
 
     Parameters
     ----------
@@ -94,10 +94,10 @@ def simulate(
         SI units. Those left out keep the module's defaults.
     duration : length of the run [s].
     rtol : relative tolerance, 1e-13 to 0.1; 1e-5 when left out. The discrete gradient takes less
-        than 1e-12 as 1e-12, for below that there is only round-off.
+        than 1e-12 as 1e-12: errors below are round-off.
     step : a fixed step [s] instead of rtol, for the discrete gradient alone. Steps end at samples,
-        at breaks of inputs and at the end of the run: what lies between two of these is divided
-        into equal steps that are no longer.
+        at breaks of inputs and at the end of the run; between two of these they are equal, and
+        no longer than this.
     order : 2, 4, 6, 8 or 10, with `step` alone; 2 when left out.
     parameters : name -> number, for a bank's parameter also a list of one number per lane; and
         `<bank>_count` -> number of lanes. SI units.
@@ -113,25 +113,25 @@ def simulate(
     times : the samples: a number of even ones, or increasing times [s]. When left out, 1001 even
         ones; with `step`, as many ends of steps, equally far apart, as 1001 allow, and the end.
     events : name -> expression, such as ``{"hit": "q - 1e-3"}``: the times at which it changes its
-        sign, to round-off, are the coordinate of that name, and `<quantity>_at_<name>` is what
-        states, inputs, outputs and temperatures are then. Expressions are texts in the language of
+        sign, to round-off, are the coordinate of that name, and `<quantity>_at_<name>` are the
+        states, inputs, outputs and temperatures there. Expressions are texts in the language of
         laws, of states (a lane as ``phi_1``), inputs, `y_<port>`, `T_<body>` and parameters, in SI.
-        Looked at are the samples, and four times per step, 1,000 to 20,000 in all: of changes that
-        come in pairs between two of them, none is seen. Not with `step`.
-    stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, which is its
-        last sample; the attribute `stopped` says so.
+        They are evaluated at the samples and four times per step, 1,000 to 20,000 times in all: two
+        changes between neighbouring times are not seen. Not with `step`.
+    stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, with a sample
+        there; the attribute `stopped` says when.
     outputs : "all", or a list such as ``["spring", "damper.heat"]``: quantities of elements beside
         the rest, named ``<element>.effort``, `.flow`, `.power` (into the element: of a source, the
         negative of what it supplies), `.energy` of what stores and `.heat` of what dissipates it.
         Couplings have `.effort_1` ... `.flow_2`, and the power from branch 1 to 2; a storage,
         `.effort_<state>`.
-    store : a path, ``"run.zarr"``: the run goes into a new Zarr store, window after window, and the
-        Dataset is read from there when it is asked for; events are written at the end. Steps end
-        where windows of some 100,000 samples do. Needs `piezo_sym[store]`.
-    progress : a function, told the time [s] reached, now and then; True, for a bar.
+    store : a path, ``"run.zarr"``: the run is written to a new Zarr store, window after window, and
+        the Dataset reads from there on demand; events are written at the end. Steps end where
+        windows of some 100,000 samples do. Needs `piezo_sym[store]`.
+    progress : a function, called with the time [s] reached every few milliseconds; True, for a bar.
     dissipative_start : for discrete_gradient with `step`. The first step after t = 0, and after
-        each jump of an input, is made of four quarters that damp what is much faster than they are,
-        and would ring from step to step for a long time. What they lose is heat of the first
+        each jump of an input, is made of four quarters that damp motions faster than they are,
+        which would ring from step to step for a long time. The energy lost heats the first
         thermal_mass, `heat_numerical` and `produced_numerical`; both balances stay exact. It helps
         where steps are longer than the fastest time constant, and harms where they are not: on
         piezo_stack, 2 ms after V_in jumps to 100 V, steps of 0.2 ms are off by 1.3e-4 instead of
@@ -148,16 +148,16 @@ def simulate(
         discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
         have their value after it, but at the end of the run their value before it. Attributes:
         units, model, parameters; `method`, `rtol` or `step`, `order`, `engine` (its compiler, or
-        why there is none), the work (`accepted_steps`, `newton_iterations`, `halvings`: steps
-        refused; for SciPy `rhs_evaluations`).
+        why there is none), the work (`accepted_steps`, `newton_iterations`, `halvings`: refused
+        steps; of SciPy `rhs_evaluations`).
 
     Raises
     ------
     UsageError : an argument is unknown, of the wrong kind, or not finite.
     EngineError : `step` or method='discrete_gradient' was asked for, and there is no engine.
     RunError : the state leaves the domain, at t = 0, a sample or an accepted step; or the solver
-        cannot go on. The message says when, and with which values; its `partial` is the Dataset up
-        to the last sample before, and so is that of a `KeyboardInterrupt`.
+        cannot go on. The message says when, and with which values; its `partial`, and that of a
+        `KeyboardInterrupt`, is the Dataset up to the last sample before.
     """
     checked(module)
     if progress is not None and not callable(progress):
@@ -165,7 +165,7 @@ def simulate(
         raise UsageError(f"{quote(progress)} shows no progress", "simulate.progress", expected)
     named, tolerance = checked_method(method), read_rtol(rtol)
     fixed = read_step(step, order, named, rtol)
-    named = read_start(dissipative_start, named)
+    named = read_dissipative_start(dissipative_start, named)
     length = positive(duration, "simulate.duration")
     start, state, given = start_of(module, t0, initial, parameters)
     check_resolved(start, length)
@@ -182,25 +182,25 @@ def simulate(
 
 
 def check_resolved(start: float, length: float) -> None:
-    """Raise `UsageError` if times of a run that starts so late cannot be told apart."""
+    """Raise `UsageError` if a run that starts so late is too short for 16 digits."""
     if not abs(start) * RESOLVED < length:
         what = f"times from t0 = {start:g} s on cannot be told apart in a run of {length:g} s"
         raise UsageError(what, "simulate.t0", remedy="begin nearer to 0")
 
 
 def stages_of(options: Mapping[str, Any]) -> int | None:
-    """Return how many stages the steps of a run have; None if it has none, or options are wrong."""
+    """Return the stages of a run's steps; None for SciPy's methods, or if options are wrong."""
     method, rtol, step, order = map(options.get, ("method", "rtol", "step", "order"))
     if method not in (None, METHOD):
         return None
     with suppress(UsageError):
         fixed = read_step(step, order, METHOD, rtol)
-        return fixed.order // 2 if fixed else choice(read_rtol(rtol))[0]
+        return fixed.order // 2 if fixed else stages_for(read_rtol(rtol))[0]
     return None
 
 
 def read_rtol(rtol: object) -> float:
-    """Return the relative tolerance; raise `UsageError` if no method could honour it."""
+    """Return the relative tolerance; raise `UsageError` if it is out of range."""
     value = RTOL if rtol is None else number(rtol, "simulate.rtol")
     if not RTOL_LEAST <= value <= RTOL_MOST:
         expected = f"{RTOL_LEAST:g} to {RTOL_MOST:g}"
@@ -210,7 +210,7 @@ def read_rtol(rtol: object) -> float:
 
 
 def read_step(step: object, order: object, method: str | None, rtol: object) -> FixedStep | None:
-    """Return the fixed step, None without one; its method must not choose its own steps."""
+    """Return the fixed step, or None; raise `UsageError` where other arguments exclude it."""
     if step is None:
         if order is not None:
             what = "there is no fixed step"
@@ -227,8 +227,8 @@ def read_step(step: object, order: object, method: str | None, rtol: object) -> 
     return FixedStep(length, 2 if order is None else read_order(order, "simulate.order"))
 
 
-def read_start(dissipative_start: object, method: str | None) -> str | None:
-    """Return the method to run; raise `UsageError` if it has no dissipative start, but shall."""
+def read_dissipative_start(dissipative_start: object, method: str | None) -> str | None:
+    """Return the method, which dissipative starts restrict to the discrete gradient."""
     where = "simulate.dissipative_start"
     if not isinstance(dissipative_start, bool):
         raise UsageError(f"{quote(dissipative_start)} is no truth value", where, "True or False")

@@ -1,12 +1,10 @@
-"""One step at a time, with inputs that the caller decides: closed loops, hardware in the loop.
+"""`Stepper`: one step at a time, with the caller's inputs: closed loops, hardware in the loop.
 
-Input: a generated module, a step, parameters and initial values, and what lies between a plant and
-its controller.  Output: a `Stepper`, whose `step(u)` takes steps of Gauss collocation in C and
-returns the outputs y.  What happens in each step costs no more than a call of C; the names, the
-ledger and errors are made when asked for.
+Input: a generated module, a step, parameters and initial values, and the delay, sampling and quanta
+between plant and controller.  Output: a `Stepper`, whose `step(u)` takes steps of Gauss collocation
+in C and returns the outputs y.  A step costs little more than a call of C: names, ledger and errors
+are computed on demand.
 """
-
-from __future__ import annotations
 
 import ctypes
 import struct
@@ -17,7 +15,7 @@ from typing import Any, NoReturn, final
 import numpy as np
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
-from piezo_sym.run.checks import FloatArray, calling, number, positive, vector, whole
+from piezo_sym.run.checks import FloatArray, calling, integer, number, positive, vector
 from piezo_sym.run.collocation import read_order
 from piezo_sym.run.engine.batch import Stepping
 from piezo_sym.run.engine.engine import engine_of
@@ -25,13 +23,13 @@ from piezo_sym.run.module import GeneratedModule, checked, row_names
 from piezo_sym.run.plant import Given, Plant, calls_of, read_held, read_plants, read_quanta
 from piezo_sym.run.system import DrivenModule
 
-#: Calls that inputs may be late.
+#: The longest delay of inputs, in calls.
 MOST_DELAY = 1_000_000
 
 
 @final
 class Stepper:
-    """A model that goes step by step, with inputs that the caller decides.
+    """A model that goes step by step, with the caller's inputs.
 
     A PI controller of the actuator's position (q is the first state), 0.1 mm within 1 s:
 
@@ -45,7 +43,7 @@ class Stepper:
     >>> print(f"q = {actuator.x[0] * 1e6:.2f} um at t = {actuator.time:.2f} s")
     q = 100.00 um at t = 1.00 s
 
-    Two of them with other dampers, sampled at 5 kHz, the voltage one sample late, q known to 10 nm:
+    Two actuators with other dampers at 5 kHz, the voltage one sample late, q measured to 10 nm:
 
     >>> plants = [{"d": 300.0}, {"d": 500.0}]
     >>> quantum = {"q": 1e-8}
@@ -61,26 +59,27 @@ class Stepper:
     Parameters
     ----------
     module : a generated module; `piezo_sym.Stepper` takes a model, a name or a path.
-    step : length of a step [s]; the step is halved inside where it has to be.
-    order : 2, 4, 6, 8 or 10: by which power of the step its error falls, where all is smooth.
+    step : length of a step [s]; a step that fails is halved.
+    order : 2, 4, 6, 8 or 10: the order of the error in the step, where all is smooth.
     parameters, initial, inputs : as for `simulate`; `inputs` are those at t = 0, numbers only. A
-        list of parameters makes as many plants: each array has one more axis for them, the last.
-    every : how many steps a call takes, its inputs held: the sample time is every*step.
-    delay : how many calls later inputs act; those at t = 0 act until then.
-    quantum : state, or output as `y_<port>` -> what its measurement is a multiple of, SI units.
+        list of parameters makes as many plants: each array has a last axis for them.
+    every : steps of a call, its inputs held: the sample time is every*step.
+    delay : calls until inputs act; those at t = 0 act until then.
+    quantum : state, or output as `y_<port>` -> quantum of its measurement, SI units.
 
     Attributes
     ----------
     states, inputs, outputs : the names of the entries of x, u and y, in order, those of
         `simulate`'s Dataset: an output is `y_<port>`; lanes are `phi_1`, ...
-    x : the state (n,), a copy, banks spread; `measured`: the same by quanta.
+    x : the state (n,), a copy, banks spread; `measured`: the state in multiples of quanta.
     time : the time [s] after the steps taken.
-    ledger : what ports and processes did since t = 0, by the names of `simulate`'s Dataset.
+    ledger : integrals over ports and processes since t = 0, by the names of `simulate`'s Dataset.
 
     Raises
     ------
-    UsageError, EngineError, RunError
-        If an option is wrong, there is no compiler, or the start is outside the domain.
+    UsageError : an option is wrong.
+    EngineError : there is no compiler.
+    RunError : the start is outside the domain.
     """
 
     @calling("Stepper")
@@ -111,11 +110,11 @@ class Stepper:
             Plant(DrivenModule(module, one, known), engine, initial, stepping, u, y)
             for one, u, y in zip(values, self._u, self._y, strict=True)
         ]
-        self._calls = calls_of(self._plants, whole(every, "Stepper.every", 1))
+        self._calls = calls_of(self._plants, integer(every, "Stepper.every", 1))
         self._at = ctypes.byref(self._calls)
         self._once, self._forget = map(self._plants[0].function, ("step_once", "forget"))
         self._x_quanta, self._y_quanta = read_quanta(quantum, self.states, self.outputs)
-        kept = whole(delay, "Stepper.delay", 0, MOST_DELAY) + 1
+        kept = integer(delay, "Stepper.delay", 0, MOST_DELAY) + 1
         self._first, self._late = self._u.copy(), np.zeros((kept, *self._u.shape))
         self._direct = not (self._many or delay)
         self._put, self._buffer = struct.Struct(f"{len(self.inputs)}d").pack_into, self._u.data
@@ -130,7 +129,7 @@ class Stepper:
         return f"<Stepper of {self._name}: step {self._h:g} s, time {self.time:g} s>"
 
     def _shown(self, rows: FloatArray, quanta: FloatArray | None = None) -> FloatArray:
-        """Return rows of numbers, one per plant, as a caller sees them, rounded to quanta."""
+        """Return a row (k,) of one plant, or those of all plants as (k, plants); a copy."""
         if quanta is not None:
             size = np.where(quanta > 0, quanta, 1.0)
             rows = np.where(quanta > 0, np.round(rows / size) * size, rows)
@@ -146,7 +145,7 @@ class Stepper:
 
     @property
     def measured(self) -> FloatArray:
-        """The state as it is measured, shaped as x: in multiples of quanta, where there are any."""
+        """The state, shaped as x, rounded to quanta where there are some."""
         return self._shown(np.array([plant.x for plant in self._plants]), self._x_quanta)
 
     @property
@@ -159,16 +158,16 @@ class Stepper:
         """The ledger since t = 0: numbers, or for a bank one per lane (lanes,).
 
         `supplied_<port>`, `heat_<element>` [J], `produced_<element>` [J/K],
-        `entropy_exchanged_<port>` [J/K]; `energy_residual` [J] and `entropy_residual` [J/K] are
-        what is left over of the two balances: round-off. Of several plants, a last axis for them.
+        `entropy_exchanged_<port>` [J/K]; the residuals of both balances, `energy_residual` [J] and
+        `entropy_residual` [J/K]: round-off. Of several plants, with a last axis for them.
         """
-        each = [plant.ledger(self._taken) for plant in self._plants]
+        ledgers = [plant.ledger(self._taken) for plant in self._plants]
         if self._many:
-            return {name: np.stack([one[name] for one in each], axis=-1) for name in each[0]}
-        return {name: row if row.ndim else float(row) for name, row in each[0].items()}
+            return {name: np.stack([one[name] for one in ledgers], axis=-1) for name in ledgers[0]}
+        return {name: row if row.ndim else float(row) for name, row in ledgers[0].items()}
 
     def step(self, u: Sequence[float | FloatArray] | FloatArray) -> FloatArray:
-        """Take one step, or `every` of them, with the inputs u held, and return the outputs after.
+        """Take one step, or `every` steps, with the inputs u held, and return the outputs after.
 
         Parameters
         ----------
@@ -178,15 +177,15 @@ class Stepper:
         Returns
         -------
         numpy.ndarray
-            y (ports,), of several plants (ports, plants), in the order of `outputs`, SI units; an
-            array of the caller's own.
+            y (ports,), of several plants (ports, plants), in the order of `outputs`, SI units; a
+            copy.
 
         Raises
         ------
         UsageError : there are more or fewer numbers than inputs, one is not finite, or another
             thread is stepping it.
-        RunError : inputs leave the domain, or no step stays in it. State, time, ledger and inputs
-            on their way are those before the call, of all plants.
+        RunError : inputs leave the domain, or no step stays in it. State, time, ledger and delayed
+            inputs of all plants are then those before the call.
         """
         if not self._begin(False):  # not to wait
             what = "another thread is stepping this Stepper"
@@ -206,33 +205,33 @@ class Stepper:
             self._end()
 
     def _queue(self, u: Sequence[float | FloatArray] | FloatArray) -> None:
-        """Let inputs wait for the call in which they act; those of this one act now."""
+        """Store inputs for the call in which they act, and set those that act in this one."""
         size = len(self._late)
-        wanted = self._late[(self._taken + size - 1) % size]  # written again if this call fails
-        for row, value in zip(wanted.T, u, strict=True):
+        stored = self._late[(self._taken + size - 1) % size]  # written again if this call fails
+        for row, value in zip(stored.T, u, strict=True):
             row[:] = value
-        if size > 1 and not np.all(np.isfinite(wanted)):  # C looks at those that act
+        if size > 1 and not np.all(np.isfinite(stored)):  # C checks those that act
             raise ValueError
         self._u[:] = self._late[self._taken % size]
 
     def __reduce__(self) -> NoReturn:
-        """Refuse to be pickled or copied: its state lies in C."""
+        """Raise `UsageError` when pickled or copied: its state lies in C."""
         what = "a Stepper stays in its process"
         remedy = "make another there, with initial=dict(zip(stepper.states, stepper.x))"
         raise UsageError(what, "Stepper", remedy=remedy)
 
     def reset(self, x: Sequence[float] | FloatArray | None = None) -> None:
-        """Go back to t = 0, with an empty ledger, and no inputs on their way.
+        """Go back to t = 0, with an empty ledger and without delayed inputs.
 
         Parameters
         ----------
         x : the state to start from (n,), in the order of `states`, of several plants also an array
-            (n, plants); the last one when left out.
+            (n, plants); that of the last reset, or the initial one, when left out.
 
         Raises
         ------
-        UsageError : this is no state.
-        RunError : it is outside the domain.
+        UsageError : x is no state.
+        RunError : x is outside the domain.
         """
         if x is not None:
             for plant, start in zip(self._plants, self._starts(x), strict=True):
@@ -244,7 +243,7 @@ class Stepper:
         self._taken = 0
 
     def _starts(self, x: Sequence[float] | FloatArray) -> list[FloatArray]:
-        """Return the states of all plants to start from; raise `UsageError` if one is none."""
+        """Return the states from which all plants start; raise `UsageError` if one is no state."""
         each = isinstance(x, np.ndarray) and x.shape == (len(self.states), len(self._plants))
         given = list(np.transpose(x)) if self._many and each else [x] * len(self._plants)
         starts = [vector(one, "Stepper.reset") for one in given]

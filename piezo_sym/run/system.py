@@ -1,9 +1,7 @@
-"""A run's fixed parts: the module, its parameters and inputs, and its functions of x and u alone.
+"""A module with its parameters and inputs, and its functions of x and u.
 
 Input: a generated module, `Parameters`, `Inputs`.  Output: `DrivenModule`.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,7 +12,7 @@ from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Inputs, Segment
-from piezo_sym.run.module import GeneratedModule, Record, exchanges, held, rows
+from piezo_sym.run.module import GeneratedModule, Record, heat_exchanges, held, rows
 
 FLOOR = 1e-15  # so that no tolerance is 0
 
@@ -33,10 +31,10 @@ class DrivenModule:
         return rows(records, self.parameters)
 
     def scale(self, x: FloatArray) -> FloatArray:
-        """Return the magnitudes of x (*batch, n), lanes of a bank at their maximum, none at 0."""
+        """Return magnitudes of x (*batch, n), at least `FLOOR`; of lanes, that of the largest."""
         scale = np.maximum(np.abs(x), FLOOR)
-        for part in self.rows(self.module.STATES):
-            scale[..., part] = np.max(scale[..., part], axis=-1, keepdims=True)
+        for row in self.rows(self.module.STATES):
+            scale[..., row] = np.max(scale[..., row], axis=-1, keepdims=True)
         return scale
 
     def field(self, segment: Segment) -> Callable[[float, FloatArray], FloatArray]:
@@ -64,13 +62,13 @@ class DrivenModule:
             return np.isfinite(self.module.rhs(x, u, self.parameters))
 
     def rates(self, x: FloatArray, u: FloatArray) -> FloatArray:
-        """Return what the ledger books, (ports + 2 processes + exchanges, *batch).
+        """Return the rates of the ledger, (ports + 2 processes + exchanges, *batch).
 
-        Supply, heat, entropy production; and the entropy that each heat exchange brings, which is
-        its power over the temperature of the body.
+        Supply rates, heat, entropy production; and the entropy from each heat exchange, its power
+        over the temperature of the body.
         """
-        m, p, exchanging = self.module, self.parameters, exchanges(self.module)
+        m, p, exchanging = self.module, self.parameters, heat_exchanges(self.module)
         with np.errstate(all="ignore"):
             supply = m.supply(x, u, p)
-            brought = supply[exchanging] / m.outputs(x, u, p)[exchanging]
-            return np.concatenate([supply, m.heat(x, u, p), m.entropy_production(x, u, p), brought])
+            entropy = supply[exchanging] / m.outputs(x, u, p)[exchanging]
+            return np.concatenate([supply, m.heat(x, u, p), m.entropy_production(x, u, p), entropy])

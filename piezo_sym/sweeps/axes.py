@@ -1,21 +1,19 @@
-"""The axes of a sweep: a dimension for each key of `over`, and what changes along it.
+"""The axes of a sweep: a dimension for each key of `over`, and the quantities that vary along it.
 
-Input: a generated module, a user's mapping `over`, the length of a run.  Output: `Axis` records,
-with their `Target`s: parameters, sizes of banks, inputs and initial values, by name.  A name that
-belongs to several quantities needs a prefix: "parameters.x", "inputs.x", "initial.x".  A key is a
-name, or a tuple of names whose values go together (a zip: one dimension, `L_T_e`).
+Input: a generated module, a user's mapping `over`, the length of a run.  Output: `Axis` records
+with `Target`s: parameters, sizes of banks, inputs and initial values, by name.  A name of several
+quantities needs a prefix: "parameters.x", "inputs.x", "initial.x".  A key is a name, or a tuple of
+names whose values are zipped (one dimension, `L_T_e`).
 """
-
-from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, Self, TypeAlias, final
 
 import numpy as np
 
 from piezo_sym.errors import UsageError, listing, nearest, quote
-from piezo_sym.run.checks import FloatArray, is_number, number, whole
+from piezo_sym.run.checks import FloatArray, integer, is_number, number
 from piezo_sym.run.functions import InputFunction
 from piezo_sym.run.inputs import read_signal
 from piezo_sym.run.module import GeneratedModule
@@ -42,10 +40,10 @@ class Target:
     name: str
     unit: str
     doc: str
-    bank: str | None  # to which it belongs, or whose size it is
+    bank: str | None  # its bank, or the one whose size it is
     is_size: bool = False  # whether it is the number of lanes of a bank
     values: FloatArray | tuple[Value, ...] = ()  # one per point; tuples of one per lane
-    texts: tuple[str, ...] = ()  # that label the values, if not all of them are numbers
+    texts: tuple[str, ...] = ()  # labels of the values, if not all are numbers
 
     @property
     def coordinate(self) -> str:
@@ -57,41 +55,38 @@ class Target:
         """Whether runs with different values need separate calls of C."""
         return self.is_size or self.kind == "inputs"
 
-    def along(self, values: FloatArray | tuple[Value, ...]) -> Target:
-        """Return it with values, one per point."""
+    def along(self, values: FloatArray | tuple[Value, ...]) -> Self:
+        """Return the target with values, one per point."""
         numbers = isinstance(values, np.ndarray) or all(map(is_number, values))
         texts = () if numbers else distinct([label(value) for value in values])
         return replace(self, values=values, texts=tuple(texts))
 
-    def part(self, points: slice) -> Target:
-        """Return it with the values at some points."""
+    def part(self, points: slice) -> Self:
+        """Return the target with the values at some points."""
         return replace(self, values=self.values[points], texts=self.texts[points])
 
     def labels(self) -> Any:
-        """Return its values as numbers (points,), or as one text each."""
+        """Return its values as numbers (points,), or as texts."""
         return self.texts or np.asarray(self.values)
 
 
 def find(module: GeneratedModule, word: object, where: str) -> Target:
-    """Return the quantity that a user's name means, without values."""
+    """Return the target, without values, that a user's name means."""
     known = list(targets(module))
     kind, dot, name = word.partition(".") if isinstance(word, str) else ("", "", word)
-    if dot:
-        found = [target for target in known if (target.kind, target.name) == (kind, name)]
-    else:
-        found = [target for target in known if target.name == word]
-    if not found:
+    matching = [t for t in known if ((t.kind, t.name) == (kind, name) if dot else t.name == word)]
+    if not matching:
         names = [t.name for t in known] + [f"{t.kind}.{t.name}" for t in known if dot]
         raise UsageError(f"unknown name {quote(word)}", where, remedy=nearest(str(word), names))
-    if len(found) > 1:
-        both = " and ".join(WORDS[target.kind] for target in found)
-        spelled = " or ".join(f"'{target.kind}.{word}'" for target in found)
-        raise UsageError(f"{quote(word)} is {both}", where, remedy=f"write {spelled}")
-    return found[0]
+    if len(matching) > 1:
+        kinds = " and ".join(WORDS[target.kind] for target in matching)
+        spelled = " or ".join(f"'{target.kind}.{word}'" for target in matching)
+        raise UsageError(f"{quote(word)} is {kinds}", where, remedy=f"write {spelled}")
+    return matching[0]
 
 
 def targets(module: GeneratedModule) -> Iterator[Target]:
-    """Yield all that can be swept."""
+    """Yield every quantity that can be swept."""
     for record in module.PARAMETERS:
         yield Target("parameters", record.name, record.unit, record.doc, record.bank)
     for bank in module.BANKS:
@@ -109,13 +104,11 @@ def read_values(
 ) -> FloatArray | tuple[Value, ...]:
     """Return a target's values, one per point; raise `UsageError` at the first that is invalid."""
     if target.is_size:
-        return tuple(whole(value, f"{where}[{n}]", 1) for n, value in enumerate(given))
-    listed = given.tolist() if isinstance(given, np.ndarray) else given
-    found = tuple(
-        read_value(target, value, f"{where}[{n}]", duration) for n, value in enumerate(listed)
-    )
-    numbers = all(isinstance(value, float) for value in found)
-    return np.array(found, dtype=float) if numbers else found
+        return tuple(integer(value, f"{where}[{n}]", 1) for n, value in enumerate(given))
+    listed = enumerate(given.tolist() if isinstance(given, np.ndarray) else given)
+    values = tuple(read_value(target, value, f"{where}[{n}]", duration) for n, value in listed)
+    numbers = all(isinstance(value, float) for value in values)
+    return np.array(values, dtype=float) if numbers else values
 
 
 def read_value(target: Target, value: object, where: str, duration: float) -> Value:
@@ -145,7 +138,7 @@ def label(value: Value) -> str:
 
 
 def distinct(texts: list[str]) -> list[str]:
-    """Return texts, numbered where two are equal."""
+    """Return texts, all of them numbered if two are equal."""
     if len(set(texts)) == len(texts):
         return texts
     return [f"{n}: {text}" for n, text in enumerate(texts)]
@@ -166,21 +159,21 @@ class Axis:
         """Whether runs at different points need separate calls of C."""
         return any(target.divides for target in self.targets)
 
-    def part(self, points: slice) -> Axis:
+    def part(self, points: slice) -> Self:
         """Return some points of the axis."""
         targets = tuple(target.part(points) for target in self.targets)
         labels = None if self.labels is None else self.labels[points]
-        return Axis(self.dim, points.stop - points.start, targets, labels)
+        return replace(self, size=points.stop - points.start, targets=targets, labels=labels)
 
     def coordinates(self) -> Iterator[tuple[str, Attributed]]:
-        """Yield the name of each coordinate along this axis, its values and attributes.
+        """Yield the name, the values and the attributes of each coordinate along this axis.
 
-        A user's labels are the index of the dimension.  If the dimension has the name of its
-        target, they replace that target's values.
+        A user's labels are the index of the dimension, and replace the values of a target with
+        the same name.
         """
         if self.labels is not None:
-            unit = {"long_name": f"labels of {listing(t.name for t in self.targets)}"}
-            yield self.dim, (self.labels, unit)
+            attrs = {"long_name": f"labels of {listing(t.name for t in self.targets)}"}
+            yield self.dim, (self.labels, attrs)
         for target in self.targets:
             if self.labels is None or target.coordinate != self.dim:
                 values = target.labels()
@@ -191,7 +184,7 @@ class Axis:
 def read_axes(
     module: GeneratedModule, over: object, duration: float, lanes: Mapping[str, int]
 ) -> tuple[Axis, ...]:
-    """Return the axes of a sweep, in the order given; `lanes` of each bank if it is not swept."""
+    """Return the axes of a sweep, in the order given; `lanes` are those of banks not swept."""
     if not isinstance(over, Mapping) or not over:
         what = f"{quote(over)} sweeps nothing" if over in ({}, None) else f"{quote(over)} is no map"
         raise UsageError(what, WHERE, "a mapping of names to lists of values")
@@ -210,13 +203,13 @@ def read_axis(module: GeneratedModule, key: object, given: object, duration: flo
     words = key if isinstance(key, tuple) else (key,)
     if not words:
         raise UsageError("a key names nothing", WHERE, "a name, or a tuple of names")
-    found = [find(module, word, WHERE) for word in words]
+    named = [find(module, word, WHERE) for word in words]
     name = ", ".join(map(str, words))
     labels, points = read_points(given, f"{WHERE}.{name}")
-    columns = [points] if not isinstance(key, tuple) else unzipped(points, words, name)
+    columns = [points] if not isinstance(key, tuple) else unzip(points, words, name)
     targets = tuple(
         target.along(read_values(target, column, f"{WHERE}.{word}", duration))
-        for target, column, word in zip(found, columns, words, strict=True)
+        for target, column, word in zip(named, columns, words, strict=True)
     )
     dim = "_".join(target.coordinate for target in targets)
     return Axis(dim, len(points), targets, labels)
@@ -225,7 +218,7 @@ def read_axis(module: GeneratedModule, key: object, given: object, duration: flo
 def read_points(
     given: object, where: str
 ) -> tuple[tuple[float | str, ...] | None, Sequence[object] | np.ndarray[Any, Any]]:
-    """Return labels, if a user gave them, and values, at least one."""
+    """Return a user's labels, or None, and values, at least one."""
     labels: tuple[float | str, ...] | None = None
     if isinstance(given, Mapping):
         labels, given = read_labels(tuple(given), where), list(given.values())
@@ -248,10 +241,10 @@ def read_labels(keys: tuple[object, ...], where: str) -> tuple[float | str, ...]
     return tuple(number(key, f"{where} (label)") for key in keys)
 
 
-def unzipped(
+def unzip(
     points: Sequence[object] | np.ndarray[Any, Any], words: tuple[object, ...], name: str
 ) -> list[Any]:
-    """Return the values of each name of a zip; each point has one per name."""
+    """Return the values of each name of a zip from its points, one value per name."""
     if isinstance(points, np.ndarray) and points.ndim == 2 and points.shape[1] == len(words):
         return list(points.T)
     for n, point in enumerate(points):
@@ -264,17 +257,17 @@ def unzipped(
 def refuse_lists(axes: tuple[Axis, ...], lanes: Mapping[str, int]) -> None:
     """Raise `UsageError` where a swept list has not one value per lane of its bank.
 
-    If the size of the bank is swept along another axis, each list meets every size.
+    If the size of the bank is swept along another axis, each list has to fit every size.
     """
     sizes = {t.bank: (axis, t) for axis in axes for t in axis.targets if t.is_size}
     for axis in axes:
         for target in (t for t in axis.targets if t.bank and not t.is_size):
             other, size = sizes.get(target.bank, (None, None))
             for n, value in enumerate(target.values):
-                met = size.values if size else (lanes[str(target.bank)],)
-                met = (met[n],) if size and other is axis else met
-                if isinstance(value, tuple) and any(len(value) != count for count in met):
-                    what = f"{len(value)} values for {listing(map(str, met), 4)} lanes"
+                counts = size.values if size else (lanes[str(target.bank)],)
+                counts = (counts[n],) if size and other is axis else counts
+                if isinstance(value, tuple) and any(len(value) != count for count in counts):
+                    what = f"{len(value)} values for {listing(map(str, counts), 4)} lanes"
                     remedy = ""
                     if size and other is not axis:
                         remedy = f"zip both: ('{target.name}', '{size.name}')"
@@ -282,11 +275,10 @@ def refuse_lists(axes: tuple[Axis, ...], lanes: Mapping[str, int]) -> None:
 
 
 def single_numbers(axes: tuple[Axis, ...]) -> dict[str, float]:
-    """Return a number for each swept parameter of a bank, to replace a list in the spec.
+    """Return a number for each swept parameter of a bank, in place of a list in the spec.
 
     A number fits the bank at every size; the spec's list may not.
     """
     targets = [target for axis in axes for target in axis.targets]
     swept = [t for t in targets if t.kind == "parameters" and t.bank and not t.is_size]
-    firsts = {t.name: t.values[0] for t in swept}
-    return {name: float(np.ravel(value)[0]) for name, value in firsts.items()}  # type: ignore[arg-type]
+    return {t.name: float(np.ravel(t.values[0])[0]) for t in swept}  # type: ignore[arg-type]

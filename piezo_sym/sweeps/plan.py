@@ -1,19 +1,16 @@
-"""A sweep as one frozen value: what runs, at which points, and how the grid is cut into boxes.
+"""The plan of a sweep: the runs, their points in the grid, and the boxes into which it is divided.
 
 Input: the arguments of `sweep`.  Output: `Plan`, or a `UsageError`.  A box is a region of the grid
 that one task runs, as a `Plan` of its own.  Within a box, runs with equal inputs and bank sizes
-form a group, which goes through C in one call; boxes are therefore cut across the axes of inputs
-and sizes first.
+form a group, one call of C; so boxes are divided along axes of inputs and sizes first.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from math import prod
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, Self, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,11 +37,10 @@ Reduction: TypeAlias = Literal["last", "mean"] | Callable[[Any], object]
 #: Where a box is in the grid: a slice for each axis.
 Region: TypeAlias = tuple[slice, ...]
 
-#: The most runs in one call of C, and by SciPy before results are kept; and the most numbers that
-#: one call may return.
+#: The most runs in one call of C, and by SciPy in one box; the most numbers that one call returns.
 MOST_TOGETHER, MOST_BY_SCIPY = 512, 32
 MOST_NUMBERS = 8_000_000
-#: Where only reductions are kept: the most runs in a box, if at least `ENOUGH_BOXES` remain.
+#: With a reduction: the most runs in a box, if at least `ENOUGH_BOXES` boxes remain.
 MOST_REDUCED = 512
 ENOUGH_BOXES = 256
 
@@ -52,22 +48,22 @@ ENOUGH_BOXES = 256
 @final
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What a sweep runs."""
+    """The runs of a sweep, or of one of its boxes."""
 
     axes: tuple[Axis, ...]  # in the user's order
     signals: tuple[Signal, ...]  # of each input, where it is not swept
     duration: float
-    #: As the user gave them, without those swept; and one number for each swept parameter of a
-    #: bank, since a list in the spec may not fit the swept sizes.
+    #: Those that the user gave and are not swept, and a number for each swept parameter of a bank,
+    #: since a list in the spec may not fit the swept sizes.
     parameters: Mapping[str, LaneValue]
     initial: Mapping[str, LaneValue]
     samples: FloatArray  # their times (nt,) [s]
     method: str
     rtol: float
-    step: FixedStep | None  # None where rtol counts
+    step: FixedStep | None  # None for steps by rtol
     reduce: Reduction | None
-    each: bool  # whether a function that reduces takes one run, or many
-    largest_banks: Mapping[str, int]  # of each bank whose size is swept
+    each: bool  # whether the reducing function takes one run, not many
+    largest_banks: Mapping[str, int]  # the largest size of each bank whose size is swept
     together: int  # the most runs in one call of C
     most: int  # the most runs in a box
     engine: str = ""  # the attribute of the Dataset, as of `simulate`
@@ -90,33 +86,31 @@ class Plan:
 
     @property
     def kept(self) -> slice:
-        """The samples that count: all, or the last."""
+        """The samples that are evaluated: all, or the last."""
         return slice(-1, None) if self.reduce == "last" else slice(None)
 
     @cached_property
     def box_shape(self) -> tuple[int, ...]:
-        """The shape of a box; those at the edges of the grid may be smaller."""
+        """The shape of a box; boxes at the edges of the grid may be smaller."""
         room, shape = self.most, list(self.shape)
         for n in reversed(sorted(range(len(shape)), key=lambda n: not self.axes[n].divides)):
             parts = -(-shape[n] // max(1, min(shape[n], room)))
             room = room // shape[n] if parts == 1 else 1
-            shape[n] = -(-shape[n] // parts)  # boxes as equal as can be
+            shape[n] = -(-shape[n] // parts)  # as equal as possible
         return tuple(shape)
 
     def regions(self) -> Iterator[Region]:
         """Yield the region of each box."""
-        along = zip(self.shape, self.box_shape, strict=True)
-        yield from product(
-            *(
-                [slice(first, min(first + part, size)) for first in range(0, size, part)]
-                for size, part in along
-            )
+        slices = (
+            [slice(first, min(first + part, size)) for first in range(0, size, part)]
+            for size, part in zip(self.shape, self.box_shape, strict=True)
         )
+        return product(*slices)
 
-    def part(self, region: Region) -> Plan:
-        """Return the plan of one box, which is all that its task needs."""
-        cut = zip(self.axes, region, strict=True)
-        return replace(self, axes=tuple(axis.part(points) for axis, points in cut))
+    def part(self, region: Region) -> Self:
+        """Return the plan of one box."""
+        axes = zip(self.axes, region, strict=True)
+        return replace(self, axes=tuple(axis.part(points) for axis, points in axes))
 
     @cached_property
     def points(self) -> NDArray[np.intp]:
@@ -124,7 +118,7 @@ class Plan:
         return np.indices(self.shape).reshape(len(self.shape), -1).T
 
     def groups(self) -> Iterator[NDArray[np.intp]]:
-        """Yield the numbers of the runs in each group."""
+        """Yield the numbers of the runs of each group."""
         divides = np.array([axis.divides for axis in self.axes])
         key = np.ravel_multi_index(tuple((self.points * divides).T), self.shape)
         for value in np.unique(key):
@@ -133,13 +127,13 @@ class Plan:
                 yield runs[first : first + self.together]
 
     def swept(self) -> Iterator[tuple[int, Target]]:
-        """Yield the number of the axis and the target, for each quantity swept."""
+        """Yield each target and the number of its axis."""
         for n, axis in enumerate(self.axes):
             for target in axis.targets:
                 yield n, target
 
     def values_at(self, kind: str, points: NDArray[np.intp]) -> Iterator[dict[str, Any]]:
-        """Yield the values of what is swept of a kind, but for sizes, at each point."""
+        """Yield the swept values of one kind, without sizes of banks, at each point."""
         swept = [(n, t) for n, t in self.swept() if t.kind == kind and not t.is_size]
         for point in points.tolist():
             yield {target.name: target.values[point[n]] for n, target in swept}
@@ -149,12 +143,11 @@ class Plan:
         (swept,) = self.values_at("inputs", point[None])
         named = zip(module.INPUTS, self.signals, strict=True)
         values = (swept.get(record.name, signal) for record, signal in named)
-        return Inputs(
-            tuple(v if isinstance(v, Signal) else Constant(float(v)) for v in values), self.duration
-        )
+        signals = (v if isinstance(v, Signal) else Constant(float(v)) for v in values)
+        return Inputs(tuple(signals), self.duration)
 
     def base_at(self, module: GeneratedModule, point: NDArray[np.intp]) -> Any:
-        """Return the parameters of the runs at a point: swept sizes, but no other swept values."""
+        """Return the parameters of the runs at a point, with swept sizes but no other values."""
         sizes = {t.name: int(t.values[point[n]]) for n, t in self.swept() if t.is_size}
         return read_parameters(module, {**self.parameters, **sizes})
 
@@ -178,10 +171,7 @@ REDUCTIONS = ("last", "mean")
 def read_plan(
     module: GeneratedModule, over: object, runs: tuple[Any, ...], reduce: Any, reduce_by: object
 ) -> Plan:
-    """Return what a sweep runs; without a compiler, its method is LSODA.
-
-    `runs` is what `simulate` takes, as `sweep` lists it.
-    """
+    """Return the plan of a sweep; `runs` are arguments of `simulate`, in the order of `sweep`."""
     inputs, duration, rtol, step, order, parameters, initial, method, times = runs
     with calling("sweep"):
         named, bound = checked_method(method), read_rtol(rtol)
@@ -195,20 +185,20 @@ def read_plan(
             if target.name in (given or {}):
                 what = f"'{target.name}' is swept and also given in '{target.kind}'"
                 raise UsageError(what, "sweep.over", remedy="give it once")
-        own = ({**(parameters or {}), **single_numbers(axes)}, dict(initial or {}))
-        base = read_parameters(module, own[0])
-        refuse_sizes(module, axes, *own, signals.segments[0].at(0.0))
+        fixed_values = {**(parameters or {}), **single_numbers(axes)}, dict(initial or {})
+        base = read_parameters(module, fixed_values[0])
+        refuse_sizes(module, axes, *fixed_values, signals.segments[0].at(0.0))
         refuse_reduction(reduce, reduce_by)
         chosen = choose_method(module, named, step)
         most = MOST_TOGETHER if chosen.method == METHOD else MOST_BY_SCIPY
         numbers = samples.size * row_numbers(module, base, axes)
         together = boxes = max(1, min(most, MOST_NUMBERS // numbers))
-        if reduce is not None:  # only reductions are kept; many boxes if possible
+        if reduce is not None:  # results are small
             size = prod(axis.size for axis in axes)
             boxes = max(together, min(MOST_REDUCED, size // ENOUGH_BOXES))
         how = (chosen.method, bound, fixed, reduce, reduce_by == "run", largest_banks(axes))
         sizes = (together, boxes, chosen.note)
-        return Plan(axes, signals.signals, end, *own, samples, *how, *sizes)  # type: ignore[arg-type]  # reduce is checked
+        return Plan(axes, signals.signals, end, *fixed_values, samples, *how, *sizes)  # type: ignore[arg-type]  # reduce is checked
 
 
 def refuse_sizes(
@@ -219,15 +209,15 @@ def refuse_sizes(
     u: FloatArray,
 ) -> None:
     """Raise `UsageError` where a list that is not swept does not fit every size of its bank."""
-    sizes = {t.name: t.values for axis in axes for t in axis.targets if t.is_size}
-    one: list[dict[str, Any]] = [{name: n} for name, v in sizes.items() for n in dict.fromkeys(v)]
-    for change in one or [{}]:
-        found = read_parameters(module, {**parameters, **change})
+    swept = {t.name: t.values for axis in axes for t in axis.targets if t.is_size}
+    sizes: list[dict[str, Any]] = [{k: n} for k, v in swept.items() for n in dict.fromkeys(v)]
+    for size in sizes or [{}]:
+        p = read_parameters(module, {**parameters, **size})
         try:
-            own_initial(module, found, u)
-        except PiezoError:  # a swept value may replace what is wrong; each run is checked
+            own_initial(module, p, u)
+        except PiezoError:  # a swept value may replace the invalid one; each run is checked
             continue
-        read_initial(module, found, u, initial)
+        read_initial(module, p, u, initial)
 
 
 def refuse_reduction(reduce: object, reduce_by: object) -> None:
@@ -241,7 +231,7 @@ def refuse_reduction(reduce: object, reduce_by: object) -> None:
 
 
 def row_numbers(module: GeneratedModule, base: Any, axes: tuple[Axis, ...]) -> int:
-    """Return about how many numbers a run yields at each sample, at the largest sizes."""
+    """Return the approximate number of values per sample of a run, at the largest sizes."""
     sizes = {bank: lanes(base, bank) for bank in module.BANKS} | largest_banks(axes)
     count: dict[str | None, int] = {None: 1}
     count.update(sizes)

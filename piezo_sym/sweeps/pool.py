@@ -1,4 +1,4 @@
-"""Boxes run side by side: in threads, or by any executor of `concurrent.futures`.
+"""Concurrent runs of boxes: in threads, or by any executor of `concurrent.futures`.
 
 Input: boxes, and a function that submits one.  Output: results as they are completed; those that
 complete together in the order of the boxes.  Few boxes are submitted at once, so that results do
@@ -39,14 +39,15 @@ SENT_AT_ONCE = 256
 
 
 class Stopped(Exception):
-    """The sweep was stopped: raised in its threads to end their work, and never passed on."""
+    """The sweep was stopped: ends the work of its threads, and does not reach the caller."""
 
 
 @contextmanager
 def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tuple[Submit, int]]:
-    """Yield a function that submits a box to own threads; they end soon after the context does.
+    """Yield a function that submits a box to threads, and how many boxes to submit at once.
 
-    A single thread is the caller's own, so that a debugger stops in a user's function.
+    The threads end soon after the context does. With `count` 1 the caller's thread runs the boxes,
+    so that a debugger stops in a user's function.
     """
     if count == 1:
         yield lambda region: at_hand(run_box(plan.part(region), module, ignore)), 1
@@ -66,7 +67,7 @@ def threads_for(plan: Plan, module: GeneratedModule, count: int) -> Iterator[tup
 
 
 def at_hand(result: Result) -> Future[Result]:
-    """Return a future that has its result."""
+    """Return a completed future."""
     future: Future[Result] = Future()
     future.set_result(result)
     return future
@@ -75,37 +76,37 @@ def at_hand(result: Result) -> Future[Result]:
 def sender(
     plan: Plan, module: GeneratedModule, model: str | Path | Model, executor: Executor
 ) -> Submit:
-    """Return what submits a box to a user's executor; threads need nothing sent."""
+    """Return a function that submits a box to a user's executor, pickled unless it has threads."""
     if isinstance(executor, ThreadPoolExecutor):
         return lambda region: executor.submit(run_box, plan.part(region), module, ignore)
     from piezo_sym.spec.load import load
 
-    ready = load(model) if isinstance(model, str | Path) else model
-    return lambda region: executor.submit(run_sent, packed(plan.part(region), ready))
+    loaded = load(model) if isinstance(model, str | Path) else model
+    return lambda region: executor.submit(run_pickled, pickled(plan.part(region), loaded))
 
 
-def packed(plan: Plan, model: Model) -> bytes:
-    """Return what a box needs as bytes for another process; functions by value if possible."""
+def pickled(plan: Plan, model: Model) -> bytes:
+    """Return the plan of a box and its model as bytes, functions by value if possible."""
     try:
-        import cloudpickle as way
+        import cloudpickle as pickler
     except ImportError:
-        way = pickle
+        pickler = pickle
     try:
-        return bytes(way.dumps((plan, model)))
+        return bytes(pickler.dumps((plan, model)))
     except Exception as cause:  # pickling runs the code of a user's objects
         what = f"a function or value cannot be sent to another process: {one_line(str(cause))}"
         remedy = "define functions in a module of their own, or `pip install cloudpickle`"
         raise UsageError(what, "sweep.executor", remedy=remedy) from cause
 
 
-def run_sent(sent: bytes) -> Result:
+def run_pickled(box: bytes) -> Result:
     """Run a box in another process, with the module loaded or generated there."""
-    plan, model = pickle.loads(sent)
+    plan, model = pickle.loads(box)
     return run_box(plan, module_of(model), ignore)
 
 
 def ignore(_: float) -> None:
-    """Do nothing: no one watches these runs."""
+    """Do nothing; the watch of runs that are not stopped."""
 
 
 def results(
@@ -117,9 +118,9 @@ def results(
         for box in boxes:
             pending[submit(box)] = box
             if len(pending) >= at_once:
-                yield from arrivals(pending)
+                yield from completed(pending)
         while pending:
-            yield from arrivals(pending)
+            yield from completed(pending)
     except BrokenExecutor as cause:
         what = f"a process of the executor died: {one_line(str(cause))}"
         remedy = "with store=..., start again: what is done is kept"
@@ -129,14 +130,12 @@ def results(
             future.cancel()
 
 
-def arrivals(
-    pending: dict[Future[Result], Region],
-) -> Generator[tuple[Region, Result], None, None]:
-    """Wait, and yield what is completed, in the order submitted."""
-    still = wait(pending, return_when=FIRST_COMPLETED).not_done
-    ready = [(f, pending.pop(f)) for f in reversed(list(pending)) if f not in still]
-    while ready:  # drops each result before the next is waited for
-        future, box = ready.pop()
+def completed(pending: dict[Future[Result], Region]) -> Iterator[tuple[Region, Result]]:
+    """Wait, then remove completed boxes and yield their results, in the order submitted."""
+    running = wait(pending, return_when=FIRST_COMPLETED).not_done
+    done = [(f, pending.pop(f)) for f in reversed(list(pending)) if f not in running]
+    while done:  # frees each result before the next is requested
+        future, box = done.pop()
         yield box, future.result()
 
 

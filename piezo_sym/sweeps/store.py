@@ -1,9 +1,9 @@
 """A Zarr store of a sweep: written box by box, so that an interrupted sweep can continue.
 
-Input: a path, a `Plan`, its frame.  Output: a `Store`.  The part of `error` of a box is written
-last; until then it says "not run".  A store has the fingerprint of its sweep, SHA-256 of each of
-its parts: equal for two sweeps exactly if they request the same runs.  A function contributes its
-name, its code and all values that it refers to, so that an edited one changes it.
+Input: a path, a `Plan`, its frame.  Output: a `Store`.  The errors of a box are written last; until
+then they are "not run".  A store has the fingerprint of its sweep, SHA-256 of each field: equal for
+two sweeps exactly if they request the same runs.  That of a function includes its name, its code
+and all values that it refers to, so that an edit changes it.
 """
 
 from __future__ import annotations
@@ -28,26 +28,26 @@ from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN, Results, Shape
 from piezo_sym.sweeps.plan import Plan, Region
 from piezo_sym.sweeps.run import Result
 
-#: Fields that say how runs are divided and executed, not which runs they are; and what users call
-#: some of the others.
+#: Fields that say how runs are divided and executed, not which runs they are; and the arguments of
+#: `sweep` that other fields come from.
 LEFT_OUT = ("most", "together", "engine", "side_by_side")
 CALLED = {"axes": "over", "signals": "inputs", "samples": "times", "each": "reduce_by"}
 
 
 def fingerprint(plan: Plan, spec_sha256: str) -> str:
-    """Return the fingerprint of a sweep: the digest of each part by its name, as JSON."""
-    found = {"spec": spec_sha256}
+    """Return the fingerprint of a sweep: the digest of each field by name, as JSON."""
+    digests = {"spec": spec_sha256}
     for field in fields(plan):
         if field.name not in LEFT_OUT:
             digest = hashlib.sha256()
             for part in parts(getattr(plan, field.name)):
                 digest.update(len(part).to_bytes(8, "little") + part)
-            found[CALLED.get(field.name, field.name)] = digest.hexdigest()
-    return json.dumps(found)
+            digests[CALLED.get(field.name, field.name)] = digest.hexdigest()
+    return json.dumps(digests)
 
 
 def difference(mark: str, stored: str) -> str:
-    """Return in which parts two sweeps differ, by their fingerprints."""
+    """Return in which fields two sweeps differ, by their fingerprints."""
     try:
         ours, theirs = json.loads(mark), dict(json.loads(stored))
     except ValueError:  # of another version
@@ -57,7 +57,7 @@ def difference(mark: str, stored: str) -> str:
 
 
 def parts(value: object, met: dict[int, object] | None = None) -> Iterator[bytes]:
-    """Yield the contents of a value as bytes; an object that was met before adds nothing."""
+    """Yield the contents of a value as bytes, those of each object in it once."""
     met = {} if met is None else met
     yield type(value).__name__.encode()
     if isinstance(value, float | int | str | bytes | None):
@@ -70,11 +70,11 @@ def parts(value: object, met: dict[int, object] | None = None) -> Iterator[bytes
         return
     if id(value) not in met:
         met[id(value)] = value  # kept alive, so that no other object gets its id
-        for part in held(value):
+        for part in contents(value):
             yield from parts(part, met)
 
 
-def held(value: object) -> Iterable[object]:
+def contents(value: object) -> Iterable[object]:
     """Return the contents of a container, a record, a function or another object of a user."""
     match value:
         case Mapping():
@@ -90,20 +90,20 @@ def held(value: object) -> Iterable[object]:
     if is_dataclass(value):
         return [getattr(value, field.name) for field in fields(value)]
     code, name = getattr(value, "__code__", None), str(getattr(value, "__qualname__", ""))
-    words = ("func", "args", "keywords", "__self__", "__defaults__", "__kwdefaults__")
-    own = [name, code, *(getattr(value, word, None) for word in words)]
+    attributes = ("func", "args", "keywords", "__self__", "__defaults__", "__kwdefaults__")
+    found = [name, code, *(getattr(value, attribute, None) for attribute in attributes)]
     if not isinstance(code, CodeType):
-        return [*own, dict(getattr(value, "__dict__", None) or {})]
+        return [*found, dict(getattr(value, "__dict__", None) or {})]
     cells = (cell.cell_contents for cell in getattr(value, "__closure__", None) or ())
     known = getattr(value, "__globals__", {})
     read = (known[name] for name in code.co_names if name in known)
-    return [*own, *cells, *(_global(one, getattr(value, "__module__", None)) for one in read)]
+    return [*found, *cells, *(_global(one, getattr(value, "__module__", None)) for one in read)]
 
 
 def _global(value: Any, module: str | None) -> object:
-    """Return what a function reads; by its name alone, if it is of another module."""
-    own = getattr(value, "__module__", None) in (None, module)
-    return value if own else f"{value.__module__}.{getattr(value, '__qualname__', '')}"
+    """Return a global value that a function reads; its name alone, if it is of another module."""
+    local = getattr(value, "__module__", None) in (None, module)
+    return value if local else f"{value.__module__}.{getattr(value, '__qualname__', '')}"
 
 
 MARK, BOX, RESULTS = "sweep_fingerprint", "sweep_box", "sweep_results"
@@ -112,25 +112,24 @@ UNREADABLE = (OSError, ValueError, KeyError, RuntimeError)
 
 
 def store_at(path: Path, plan: Plan, frame: xarray.Dataset, spec_sha256: str) -> tuple[Plan, Store]:
-    """Return the store at a path, created if there is none, and the plan with its boxes."""
+    """Return the store at a path, created if there is none, and the plan with the store's boxes."""
     zarr, mark = zarr_library("sweep.store"), fingerprint(plan, spec_sha256)
     if not path.exists():
         create(path, plan, frame, {MARK: mark, BOX: plan.most})
     try:
         group = zarr.open_group(path, mode="r+", zarr_format=3, use_consolidated=False)
+        stored = group.attrs[MARK]
     except UNREADABLE as cause:
         raise FileError("is no store of a sweep", path_text(path), remedy=FRESH) from cause
-    if MARK not in group.attrs:
-        raise FileError("is no store of a sweep", path_text(path), remedy=FRESH)
-    if group.attrs[MARK] != mark:
-        what, expected = difference(mark, str(group.attrs[MARK])), "a store of this very sweep"
+    if stored != mark:
+        what, expected = difference(mark, str(stored)), "a store of this very sweep"
         raise FileError(what, path_text(path), expected, FRESH)
     plan = replace(plan, most=int(str(group.attrs[BOX])))
     return plan, Store(path, group, plan)
 
 
 def create(path: Path, plan: Plan, frame: xarray.Dataset, marks: dict[str, object]) -> None:
-    """Create a store in which nothing has run; it is moved to its path when complete."""
+    """Create a store without results beside its path, and move it there when complete."""
     errors = np.full(plan.shape, NOT_RUN, dtype=object)
     empty = frame.assign(error=(plan.dims, errors, ERROR_ATTRS)).assign_attrs(marks)
     # a missing chunk reads as not run
@@ -147,9 +146,9 @@ def create(path: Path, plan: Plan, frame: xarray.Dataset, marks: dict[str, objec
 
 
 def consolidate(path: Path) -> None:
-    """Write consolidated metadata, which readers of a store look for.
+    """Write consolidated metadata, without which xarray warns when it opens the store.
 
-    zarr warns that its format 3 does not define them yet; xarray warns where they are missing.
+    zarr warns that its format 3 does not define them yet.
     """
     import zarr
 
@@ -160,7 +159,7 @@ def consolidate(path: Path) -> None:
 
 @final
 class Store(Results):
-    """Writes results into arrays over the grid, one chunk per box."""
+    """Writes results into Zarr arrays over the grid, one chunk per box."""
 
     def __init__(self, path: Path, group: Any, plan: Plan) -> None:
         super().__init__(plan)
@@ -190,15 +189,15 @@ class Store(Results):
             what = f"cannot be written: {cause.strerror}"
             raise FileError(what, path_text(self._path)) from cause
 
-    def _add(self, name: str, one: xarray.Variable, shape: Shape, chunks: Shape) -> None:
+    def _add(self, name: str, like: xarray.Variable, shape: Shape, chunks: Shape) -> None:
         self._arrays.create_array(
             name,
             shape=shape,
             chunks=tuple(max(1, size) for size in chunks),
-            dtype=one.dtype,
-            fill_value=np.nan if one.dtype.kind == "f" else 0,
-            dimension_names=one.dims,
-            attributes=dict(one.attrs),
+            dtype=like.dtype,
+            fill_value=np.nan if like.dtype.kind == "f" else 0,
+            dimension_names=like.dims,
+            attributes=dict(like.attrs),
         )
 
     def dataset(self) -> xarray.Dataset:
@@ -207,7 +206,8 @@ class Store(Results):
         As in memory, it has no attributes of the store, and errors are Python strings.
         """
         consolidate(self._path)
-        found: xarray.Dataset = xarray.open_zarr(self._path, chunks=None, consolidated=False)
-        found["error"] = found["error"].astype(object)
-        found.attrs = {k: v for k, v in found.attrs.items() if k not in {MARK, BOX, RESULTS}}
-        return found
+        stored: xarray.Dataset = xarray.open_zarr(self._path, chunks=None, consolidated=False)
+        stored["error"] = stored["error"].astype(object)
+        for name in {MARK, BOX, RESULTS} & {*stored.attrs}:
+            del stored.attrs[name]
+        return stored

@@ -1,9 +1,9 @@
 """`sweep`: many runs of a model in one call; the table of contents of this stage.
 
-Input: a model, the quantities to sweep and their values, and what a single run takes.  Output: one
+Input: a model, the quantities to sweep and their values, and the arguments of a run.  Output: one
 `xarray.Dataset` over the swept dimensions.
 
-    read_plan -> Plan -> boxes, each a Plan -> run_box, side by side -> Sink -> Dataset
+    read_plan -> Plan -> boxes, each a Plan -> run_box, in parallel -> Results -> Dataset
 """
 
 from __future__ import annotations
@@ -19,13 +19,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+import xarray
 from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.files import path_of
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
-from piezo_sym.run.checks import whole
+from piezo_sym.run.checks import integer
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
@@ -35,8 +36,6 @@ from piezo_sym.sweeps.plan import Plan, Reduction, read_plan
 from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
 
 if TYPE_CHECKING:
-    import xarray
-
     from piezo_sym.spec.model import Model
 
 
@@ -67,19 +66,19 @@ def sweep(
 ) -> xarray.Dataset:
     """Run a model over a grid of parameters, sizes, inputs and initial values.
 
-    Runs that share inputs and sizes go through C together, boxes of them side by side. A run that
-    fails is nan, `error` says why, and the others stand.
+    Runs with equal inputs and sizes take one call of C, and boxes of them run in parallel. A run
+    that fails is nan, with the reason in `error`; the others are not affected.
 
     Parameters
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
-    over : name -> list or array of values; a dimension each, their product is run. Names are
-        those of parameters, `<bank>_count`, inputs and states (their values at t = 0); where two
-        things share one, write "parameters.x", "inputs.x" or "initial.x". Values are what
-        `simulate` takes, SI units; beside a list of one value per lane, all are labelled by texts.
+    over : name -> list or array of values; each is a dimension, and their product is run. Names
+        are those of parameters, `<bank>_count`, inputs and states (their values at t = 0); where
+        two quantities share one, write "parameters.x", "inputs.x" or "initial.x". Values are as
+        for `simulate`, SI units; if one is a list of one value per lane, texts label all of them.
         A mapping of labels (numbers or texts) to values gives the dimension these labels. A tuple
-        of names -> a list of tuples, or an array (points, names): values that go together, one
-        dimension "L_T_e", with coordinates L and T_e along it.
+        of names -> a list of tuples, or an array (points, names): zipped values, one dimension
+        "L_T_e", with coordinates L and T_e along it.
     inputs, duration, rtol, step, order, parameters, initial, times : of all runs, as for
         `simulate`: 1001 samples when `times` is left out, each of which costs steps of its own;
         with `reduce="last"` and a tolerance the end alone.
@@ -91,18 +90,19 @@ def sweep(
     reduce_by : "run", the function takes one run; "chunk", it takes many at once, over the
         dimension `member`, which its results keep: faster by far.
     executor : any `concurrent.futures.Executor`, such as `client.get_executor()` of Dask, instead
-        of threads. Functions given to other processes are best sent with cloudpickle installed.
-    threads : their number; as many as processors when left out. With 1, all runs in the caller's.
+        of threads. To send functions to other processes, install cloudpickle.
+    threads : their number; that of the processors when left out. With 1, the caller's runs all.
     store : the path of a Zarr store (`pip install piezo_sym[store]`), written box by box. The same
-        call goes on where it was stopped; another one is refused. `xarray.open_zarr` opens it.
+        call continues where it was stopped; another one is refused. `xarray.open_zarr` opens it.
     progress : whether to show a bar, or a function of (done, total); None: a bar on a terminal.
 
     Returns
     -------
     xarray.Dataset
-        All that `simulate` gives, over (swept dimensions, `time`, [bank]); inputs only along what
-        sweeps them, and then named `u_<input>`. A swept state's dimension is `initial_<state>`.
-        Banks of fewer lanes than the largest are filled with nan. `error`: "" where a run is good.
+        The quantities of `simulate`, over (swept dimensions, `time`, [bank]); a swept input is
+        `u_<input>`, over its own dimension, and others have none. A swept state's dimension is
+        `initial_<state>`. Banks with fewer lanes than the largest are padded with nan. `error`: ""
+        where a run succeeds.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def sweep(
     {'V_in': 2, 'L': 3, 'time': 1001}
     """
     refuse_others(others)
-    count = processors() if threads is None else whole(threads, "sweep.threads", 1)
+    count = processors() if threads is None else integer(threads, "sweep.threads", 1)
     refuse_executor(executor, threads)
     module: Any = module_of(model)
     runs = (inputs, duration, rtol, step, order, parameters, initial, method, times)
@@ -135,25 +135,25 @@ def sweep(
         else:
             submit, at_once = sender(plan, module, model, executor), SENT_AT_ONCE
         run_missing(sink, submit, at_once, progress, plan.size)
-    found = sink.dataset()
-    warn(found, plan)
-    return found
+    dataset = sink.dataset()
+    warn(dataset, plan)
+    return dataset
 
 
 def run_missing(sink: Results, submit: Submit, at_once: int, progress: object, total: int) -> None:
-    """Run the boxes that are missing, and keep the results as they are completed."""
+    """Run the boxes that are missing, and store the results as they are completed."""
     boxes = list(sink.missing())
     done = total - sum(prod(part.stop - part.start for part in box) for box in boxes)
-    telling = progress_of(progress, total, "sweep", "sweep.progress")
-    with telling as tell, closing(results(submit, boxes, at_once)) as found:
-        for region, result in found:
+    bar = progress_of(progress, total, "sweep", "sweep.progress")
+    with bar as tell, closing(results(submit, boxes, at_once)) as completed:
+        for region, result in completed:
             sink.take(region, result)
             done += result.errors.size
             tell(done, total)
 
 
 def refuse_others(others: Iterable[str]) -> None:
-    """Raise `UsageError` if a sweep is given what it does not take, such as events of its runs."""
+    """Raise `UsageError` for arguments that a sweep does not take, such as events of its runs."""
     for name in others:
         if name in signature(simulate).parameters:
             remedy = "leave it out, or call simulate() for each run"
@@ -163,7 +163,7 @@ def refuse_others(others: Iterable[str]) -> None:
 
 
 def refuse_executor(executor: object, threads: object) -> None:
-    """Raise `UsageError` if `executor` is none, or threads are given, too."""
+    """Raise `UsageError` if `executor` is not one, or threads are given, too."""
     if executor is None:
         return
     if threads is not None:
@@ -176,7 +176,7 @@ def refuse_executor(executor: object, threads: object) -> None:
 def sink_of(
     plan: Plan, module: GeneratedModule, store: str | Path | None, threads: int
 ) -> tuple[Plan, Results]:
-    """Return what collects the results, and the plan with its boxes."""
+    """Return the plan with the size of its boxes, and what collects their results."""
     frame = frame_of(plan, module)
     plan = replace(plan, most=max(1, min(plan.most, -(-plan.size // (2 * threads)))))
     if store is None:
@@ -186,9 +186,9 @@ def sink_of(
     return store_at(path_of(store, "sweep.store"), plan, frame, module.SPEC_SHA256)
 
 
-def warn(found: xarray.Dataset, plan: Plan) -> None:
+def warn(dataset: xarray.Dataset, plan: Plan) -> None:
     """Warn in one line if runs failed."""
-    errors = found["error"].values.ravel()
+    errors = dataset["error"].values.ravel()
     failed = np.flatnonzero(errors != "")
     if failed.size:
         many = f"{failed.size} of {plan.size} runs failed, see 'error'; the first: "

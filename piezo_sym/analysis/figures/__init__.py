@@ -3,7 +3,7 @@
 Input: the generated module of ``piezo_stack``.  Output: for each an `xarray.Dataset` and a
 Matplotlib figure.  Where the paper does not say what it shows, each file says what is shown here.
 
-Which claims of section 4 hold with Table 1 says notebook 06, and tests/analysis/test_claims.py.
+Notebook 06 and tests/analysis/test_claims.py say which claims of section 4 hold with Table 1.
 """
 
 from piezo_sym.analysis.figures.figure import PaperFigure, data_of

@@ -1,19 +1,16 @@
-"""A figure of the paper: the data of each of its curves, from a run or a search, and the drawing.
+"""A figure of the paper: the data of its curves, from runs or searches, and the drawing.
 
 Input: a generated module.  Output: `PaperFigure`, and its data as an `xarray.Dataset`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.figure import Figure
+import xarray
+from matplotlib.figure import Figure
 
-    from piezo_sym.run import GeneratedModule
+from piezo_sym.run import GeneratedModule
 
 ZERO_CELSIUS = 273.15
 CELSIUS = "\N{DEGREE SIGN}C"
@@ -25,10 +22,10 @@ AMPLITUDE = 100.0  # of the voltage [V]
 @final
 @dataclass(frozen=True)
 class PaperFigure:
-    """A figure: the dimension over which its curves differ, the data of one, the drawing of all."""
+    """A figure: functions for the data of one of its curves, and to draw all of them."""
 
     name: str
-    over: str  # dimension in which the curves differ
+    over: str  # dimension along which the curves differ
     values: tuple[float, ...]
     units: str
     curve: Callable[[GeneratedModule, float], xarray.Dataset]
@@ -36,8 +33,6 @@ class PaperFigure:
 
     def joined(self, curves: list[xarray.Dataset]) -> xarray.Dataset:
         """Return the data of all curves, in the order of `values`."""
-        import xarray
-
         attrs: dict[str, Any] = {"units": self.units}
         axis = xarray.DataArray(list(self.values), dims=self.over, name=self.over, attrs=attrs)
         return xarray.concat(curves, axis, join="outer", combine_attrs="drop_conflicts")

@@ -7,20 +7,13 @@ temperatures; these are those of its other figures.
     w_T(i) = rho/(T - T_0) deadzone(i, i_0)
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray
+from matplotlib.figure import Figure
 
 from piezo_sym.analysis.figures.figure import CELSIUS, TEMPERATURES, ZERO_CELSIUS, PaperFigure
 from piezo_sym.analysis.style import column_figure, draw_lines, legend, name_axes
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.figure import Figure
-
-    from piezo_sym.run import GeneratedModule
+from piezo_sym.run import GeneratedModule
 
 MOST_CURRENT = 2.0  # A
 POINTS = 400  # none at i = 0, where heat over current is 0/0
@@ -28,8 +21,6 @@ POINTS = 400  # none at i = 0, where heat over current is 0/0
 
 def curve(module: GeneratedModule, celsius: float) -> xarray.Dataset:
     """Return w_T over the current, at one temperature of the body [degrees Celsius]."""
-    import xarray
-
     p = module.Parameters(hysteron_count=1)
     T = celsius + ZERO_CELSIUS
     current = MOST_CURRENT * (2 * np.arange(POINTS) + 1 - POINTS) / (POINTS - 1)

@@ -1,8 +1,8 @@
 """Figure 4: static temperature change of the body over the frequency, for four inductances.
 
 Input: the generated module of ``piezo_stack``.  Output: `FIGURE_4`: 100 V, 25 degrees Celsius.
-Shown is the mean temperature of the periodic steady states: stable ones as solid lines, unstable
-ones thin and dotted, and arrows where the temperature jumps; the folds stand apart in an inset.
+It shows the mean temperature of the periodic steady states: stable ones as solid lines, unstable
+ones thin and dotted, and arrows where the temperature jumps; an inset enlarges the folds.
 
 With Table 1's numbers the damper's heat grows with alpha^2, so with T^2, but the cooling only with
 T.  Up to a fold at 58 to 71 Hz, depending on the inductance, there is a cool steady state, whose
@@ -16,42 +16,34 @@ rho/(T - T_0) are fits near room temperature; commercial stacks are rated to 350
 the Curie temperature of soft PZT (420 to 620 K) the piezoelectric effect vanishes.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from piezo_sym.analysis.branches import steady_branches
 from piezo_sym.analysis.figures.figure import AMPLITUDE, TEMPERATURES, ZERO_CELSIUS, PaperFigure
 from piezo_sym.analysis.style import COLOURS, SMALL, column_figure, dress, legend, name_axes
-from piezo_sym.run import sine
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from piezo_sym.run import GeneratedModule
+from piezo_sym.run import GeneratedModule, sine
 
 T_E = TEMPERATURES[0] + ZERO_CELSIUS  # K
 INDUCTANCES = (0.1, 0.5, 1.0, 5.0)  # mH
 FREQUENCIES = (10.0, 1000.0)  # Hz
-HOTTEST = 1e4  # K: where curves end
+HOTTEST = 1e4  # K: curves end there
 VALID = 400.0  # K: above, the laws are not valid
 LEAST, MOST = 1.0, 1e4  # of the axis [K]
 MARKS = ("o", "s", "^", "D")  # not dashes, which tell stable from unstable
-#: The folds, enlarged: where in the axes, and from and to which frequency [Hz] and rise [K].
+#: The inset of the folds: its place in the axes, its ranges of frequency [Hz] and rise [K].
 INSET = (0.57, 0.08, 0.41, 0.29)
 FOLDS, RISES = (55.0, 75.0), (50.0, 500.0)
-APART = 0.3  # marks on a line, as a part of the diagonal
+APART = 0.3  # distance of marks on a line, as a part of the diagonal
 
 
 def curve(module: GeneratedModule, millihenry: float) -> xarray.Dataset:
-    """Return the steady states at one inductance [mH], point after point along their curves."""
-    import xarray
-
-    found = steady_branches(
+    """Return the steady states at one inductance [mH], in order along their curves."""
+    branches = steady_branches(
         module,
         inputs=lambda f: {"V_in": sine(AMPLITUDE, f), "T_e": T_E},
         frequencies=FREQUENCIES,
@@ -61,7 +53,7 @@ def curve(module: GeneratedModule, millihenry: float) -> xarray.Dataset:
     units = {"frequency": "Hz", "temperature": "K", "coldest": "K", "hottest": "K", "jumps_to": "K"}
     columns = {
         name: ("point", values, {"units": units.get(name, "1")})
-        for name, values in found.table().items()
+        for name, values in branches.table().items()
     }
     return xarray.Dataset(columns, {"point": np.arange(columns["curve"][1].size)})
 
@@ -99,7 +91,7 @@ def _draw_all(axes: Axes, data: xarray.Dataset) -> None:
 
 
 def _draw_curve(axes: Axes, curve: xarray.Dataset, label: str, look: dict[str, Any]) -> None:
-    """Draw one curve: solid where stable, dotted where not; a fold belongs to both."""
+    """Draw one curve, solid where stable, else dotted; a fold belongs to both parts."""
     frequency, rise = curve.frequency.values, curve.temperature.values - T_E
     fold = np.isfinite(curve.jumps_to.values) | np.isinf(curve.jumps_to.values)
     stable = curve.stable.values > 0

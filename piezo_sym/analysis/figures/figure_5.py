@@ -5,25 +5,17 @@ at 50 V and at the environment's temperature.  In thermal equilibrium the tip re
 
     q = V a T_e/(T_0 k)
 
-The step leaves 0.3 J in the body, which warms it by 0.05 K; after the 10 ms shown, the tip is
-therefore further out than that by 2e-4 of its travel, and returns with the time constant c_0/lam =
-2.5 s.
+The step leaves 0.3 J of heat in the body, which warms it by 0.05 K; so after the 10 ms shown, the
+tip is beyond this q by 2e-4 of its travel, and returns with the time constant c_0/lam = 2.5 s.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+import xarray
+from matplotlib.figure import Figure
 
 from piezo_sym.analysis.figures.figure import CELSIUS, TEMPERATURES, ZERO_CELSIUS, PaperFigure
 from piezo_sym.analysis.style import column_figure, draw_lines, legend, name_axes
-from piezo_sym.run import simulate, step
+from piezo_sym.run import GeneratedModule, simulate, step
 from piezo_sym.run.collocation import METHOD
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.figure import Figure
-
-    from piezo_sym.run import GeneratedModule
 
 BEFORE, AFTER = 50.0, 100.0  # V
 AT, DURATION = 1e-3, 11e-3  # s

@@ -5,16 +5,15 @@ temperatures of the environment; `FIGURE_6`: 100 V, 25 degrees Celsius, at four 
 runs of Figure 6 have different lengths, so their data lie over periods of the drive, not over time.
 
 The paper does not say when its loops are taken.  They cannot be periodic steady states: with Table
-1 at 100 V and 100 Hz the only one has 2722 K (Figure 4).  The first period is not closed.  Shown is
-the tenth after a start at rest in thermal equilibrium: by then the initial transient has decayed
-(the tip returns to within 0.3 % of its travel) and the body has warmed by a few kelvin.
+1 at 100 V and 100 Hz the only one is at 2722 K (Figure 4).  The first period is not closed.  These
+are the tenth periods after a start at rest in thermal equilibrium: by then the initial transient
+has decayed (the tip returns to within 0.3 % of its travel) and the body has warmed by a few kelvin.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from piezo_sym.analysis.figures.figure import (
     AMPLITUDE,
@@ -24,15 +23,8 @@ from piezo_sym.analysis.figures.figure import (
     PaperFigure,
 )
 from piezo_sym.analysis.style import column_figure, draw_lines, legend, name_axes
-from piezo_sym.run import simulate, sine
+from piezo_sym.run import GeneratedModule, simulate, sine
 from piezo_sym.run.collocation import METHOD
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from piezo_sym.run import GeneratedModule
 
 FREQUENCIES = (10.0, 50.0, 100.0, 200.0)  # Hz, of Figure 6
 FREQUENCY = 100.0  # Hz, of Figure 3
@@ -43,7 +35,7 @@ RTOL = 1e-7
 
 def run(module: GeneratedModule, celsius: float, frequency: float = FREQUENCY) -> xarray.Dataset:
     """Return ten periods, at a temperature of the environment [deg C] and a frequency [Hz]."""
-    found = simulate(
+    dataset = simulate(
         module,
         inputs={"V_in": sine(AMPLITUDE, frequency), "T_e": celsius + ZERO_CELSIUS},
         duration=PERIODS / frequency,
@@ -51,16 +43,15 @@ def run(module: GeneratedModule, celsius: float, frequency: float = FREQUENCY) -
         times=PERIODS * SAMPLES + 1,
         method=METHOD,
     )
-    return found[["V_in", "q", "T_body"]]
+    return dataset[["V_in", "q", "T_body"]]
 
 
 def over_turns(module: GeneratedModule, frequency: float) -> xarray.Dataset:
     """Return the run at one frequency [Hz], over periods of the drive."""
-    found = run(module, TEMPERATURES[0], frequency)
-    turns = np.arange(found.sizes["time"]) / SAMPLES
-    moved = found.rename(time="turn").assign_coords(turn=("turn", turns))
-    moved.turn.attrs.update({"units": "1", "long_name": "turns of the drive"})
-    return moved
+    dataset = run(module, TEMPERATURES[0], frequency)
+    turns = np.arange(dataset.sizes["time"]) / SAMPLES
+    attrs = {"units": "1", "long_name": "turns of the drive"}
+    return dataset.rename(time="turn").assign_coords(turn=("turn", turns, attrs))
 
 
 def last_periods(data: xarray.Dataset) -> xarray.Dataset:
@@ -68,7 +59,7 @@ def last_periods(data: xarray.Dataset) -> xarray.Dataset:
     return data.isel({"time" if "time" in data.dims else "turn": slice(-SAMPLES - 1, None)})
 
 
-def _drawn(data: xarray.Dataset, over: str, unit: str) -> tuple[Figure, Axes]:
+def _draw_loops(data: xarray.Dataset, over: str, unit: str) -> tuple[Figure, Axes]:
     figure, axes = column_figure()
     last = last_periods(data)
     draw_lines(axes, last.V_in, last.q * 1e3, over, unit)
@@ -78,14 +69,14 @@ def _drawn(data: xarray.Dataset, over: str, unit: str) -> tuple[Figure, Axes]:
 
 def draw_3(data: xarray.Dataset) -> Figure:
     """Return Figure 3."""
-    figure, axes = _drawn(data, "T_e", CELSIUS)
+    figure, axes = _draw_loops(data, "T_e", CELSIUS)
     legend(axes, "$T_{\\mathrm{e}}$", loc="upper left")
     return figure
 
 
 def draw_6(data: xarray.Dataset) -> Figure:
     """Return Figure 6."""
-    figure, axes = _drawn(data, "frequency", "Hz")
+    figure, axes = _draw_loops(data, "frequency", "Hz")
     axes.set_ylim(-2.3, 3.1)
     legend(axes, "$f$", loc="upper center", ncols=4, handlelength=2, columnspacing=1)
     return figure

@@ -1,7 +1,7 @@
-"""Collocation steps of runs in C: the library of a number of stages, and batches of runs.
+"""Collocation steps of runs in C: the library for a number of stages, and batches of runs.
 
-Input: a module's engine, parameters, inputs and states of some runs.  Output: `Batch`, which steps
-them and owns the arrays that C works on.
+Input: a module's engine; parameters, inputs and states of some runs.  Output: `Batch`, which steps
+them and owns the arrays that C uses.
 """
 
 import ctypes
@@ -20,24 +20,24 @@ from piezo_sym.run.engine.records import DOUBLE, LONG, addresses, at, c_record, 
 from piezo_sym.run.engine.signals import InputRecords
 from piezo_sym.run.inputs import Inputs
 
-#: Vectors lie at multiples of so many bytes.
+#: Alignment of vectors, in bytes.
 ALIGNED = 64
 
 
 @final
 @dataclass(frozen=True)
 class Stepping:
-    """How runs step.
+    """The options of steps.
 
     Attributes
     ----------
     stages : of a step, 1 to 5; its order is twice that.
     tolerance : of the estimate of a step's error, in scales of the states; not used with `fixed`.
-    fixed : the longest step [s], where steps divide what lies between samples and breaks evenly,
-        and go over kinks; 0 if errors decide.
+    fixed : the longest step [s], for equal steps between samples and breaks that go over kinks; 0
+        for steps chosen by their errors.
     first, longest : the length of the first step, and of the longest [s].
-    kinks : steps end there; or, with many switches, go over them where that is faster.
-    lossy : whether steps are dissipative, of one stage; one that does not succeed is not halved.
+    kinks : "end" steps at kinks; or "either": go over many of them where that is faster.
+    lossy : whether steps are dissipative, of one stage; a failed one is not halved.
     """
 
     stages: int
@@ -53,14 +53,14 @@ class Stepping:
 def collocation_library(
     engine: Engine, stages: int, layout: Layout, *, lossy: bool = False
 ) -> ctypes.CDLL:
-    """Return the library of a module's collocation steps of so many stages."""
+    """Return the library of a module's collocation steps with `stages` stages."""
     step = read_source(engine.module, "_step.c")
-    made = replace(engine.sources, step=step, stages=stages, layout=layout, lossy=lossy)
-    return shared_library(made)
+    sources = replace(engine.sources, step=step, stages=stages, layout=layout, lossy=lossy)
+    return shared_library(sources)
 
 
 def is_lossy(engine: Engine) -> bool:
-    """Return whether a module has dissipative steps: stores, and a body to take their loss."""
+    """Return whether a module has dissipative steps: it has storage, and a body to heat."""
     library = collocation_library(engine, 1, "one")
     return bool(LONG.in_dll(library, f"{engine.module.NAME}_lossy").value)
 
@@ -69,19 +69,20 @@ def is_lossy(engine: Engine) -> bool:
 class Batch:
     """Runs of equal sizes, stepped together.
 
-    In vectors lie numbers of "one" run after another, of "many" side by side, or of the "lanes" of
-    one run's banks: `layout`.
+    `layout` says what vectors hold: the stages of "one" run, "many" runs, or the "lanes" of one
+    run's banks.
 
     Attributes
     ----------
-    x : the states (runs, n): at t = 0, and then where runs are.
+    x : the current states (runs, n), at first those at t = 0.
     largest : the largest magnitude of each state (runs, n).
-    ledgers : what is booked so far, and what rounding lost of it (runs, 2, rows).
+    ledgers : the ledger so far, and its rounding error (runs, 2, rows).
     states, sums : at samples, (runs, samples, n) and (runs, samples, rows), rows in the order of
-        `DrivenModule.rates`, then `extra`: 2 for heat and entropy of dissipative steps; nan beyond
-        the time a run reached.
-    records : what else C tells of each run, by the names of MODEL(run).
-    inputs, address : those of all runs, in C; of MODEL(batch).
+        `DrivenModule.rates`, then `extra`: 2 for heat and entropy of dissipative steps; nan at
+        samples not reached.
+    records : the other fields of each run, by the names of MODEL(run).
+    inputs : of all runs, in C.
+    address : of MODEL(batch).
     """
 
     def __init__(
@@ -117,9 +118,9 @@ class Batch:
         self.go_on(stepping, inputs.end)
 
     def go_on(self, stepping: Stepping, stop: float) -> None:
-        """Prepare runs to go on from where they are until `stop` [s]; those that failed stay.
+        """Prepare runs to continue until `stop` [s], except for failed ones.
 
-        The others are in one segment of the inputs, or beyond `stop`.
+        All are in the same segment of the inputs, or beyond `stop`.
         """
         self._load(stepping)
         t = self.records["t"].min(where=self.records["failed"] == 0, initial=stop)
@@ -151,33 +152,33 @@ class Batch:
         self._library = collocation_library(*given, lossy=stepping.lossy)
 
     def sizes(self) -> NDArray[Any]:
-        """Return what the model's own function says of its arrays' sizes."""
+        """Return the sizes of the model's arrays, by MODEL(sizes_of)."""
         module = self._engine.module
-        found = np.zeros(7 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
+        sizes = np.zeros(7 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
         first = ctypes.c_void_p(int(self._structures.addresses[0]))
-        self.function("sizes_of")(first, at(found))
-        return found
+        self.function("sizes_of")(first, at(sizes))
+        return sizes
 
     @property
     def run(self) -> int:
         """The address of the first run."""
         return ctypes.addressof(self._runs)
 
-    def function(self, word: str) -> Any:
-        """Return one of the functions of C by its own name."""
-        return getattr(self._library, f"{self._engine.module.NAME}_{word}")
+    def function(self, name: str) -> Any:
+        """Return the C function MODEL(name)."""
+        return getattr(self._library, f"{self._engine.module.NAME}_{name}")
 
     def survey(self, longest: float) -> None:
-        """Find by rough steps, none longer than that [s], how large states become: `largest`."""
+        """Set `largest` by coarse steps of at most `longest` [s]."""
         self.call("survey", DOUBLE(longest))
 
     def go(self, steps: int) -> bool:
-        """Take at most so many steps in each lane; return whether there is more to do."""
+        """Take at most `steps` steps in each lane; return whether runs are left."""
         return bool(self.call("go", LONG(steps)))
 
-    def call(self, word: str, *more: Any) -> Any:
-        """Call one of the functions of C on the batch; raise what an input has raised."""
-        found = self.function(word)(self.address, *more)
+    def call(self, name: str, *more: Any) -> Any:
+        """Call MODEL(name) with the batch; raise the exception of a user's input function."""
+        result = self.function(name)(self.address, *more)
         if self.inputs.raised:
             raise self.inputs.raised[0]
-        return found
+        return result

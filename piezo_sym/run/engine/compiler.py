@@ -1,7 +1,7 @@
-"""The C compilers of this machine, one call of them, and the processor that they compile for.
+"""The C compilers of this machine, calls of them, and the processor for which they compile.
 
 Input: the environment.  Output: `Compiler` records in the order in which they are tried: ``$CC``,
-cc, gcc, clang, then the one of the `zig` extra; and shared libraries.
+cc, gcc, clang, then that of the `zig` extra; and shared libraries.
 """
 
 import os
@@ -21,13 +21,12 @@ from typing import final
 
 from piezo_sym.errors import EngineError, one_line
 
-#: No contraction: a product and a sum are rounded apart, as in NumPy, so that a residual and what
-#: the ledger books are the same number, and a state at rest stays there.  Fused: 5 % less time.
+#: No contraction: products and sums are rounded separately, as in NumPy, so that a residual and the
+#: ledger are the same number, and a state at rest stays there.  It costs 5 % more time.
 COMMON = ("-std=c99", "-fPIC", "-shared", "-ffp-contract=off")
-#: Functions of one library call each other directly: nobody replaces them.
+#: Functions of one library call each other directly, as nothing replaces them.
 DIRECT = "-fno-semantic-interposition"
-#: For gcc: loops of a known number of turns, such as those over stages, are written out if small;
-#: 8 % less time.
+#: For gcc: unrolls short loops of known length, such as those over stages; 8 % less time.
 WRITTEN_OUT = (
     *("--param", "max-completely-peeled-insns=1000"),
     *("--param", "max-completely-peel-times=32"),
@@ -35,18 +34,18 @@ WRITTEN_OUT = (
 #: Nobody looks at the processor's flags of exceptions: both sides of a choice may be computed, so
 #: that loops with choices become vectors. No number changes.
 FASTEST = ("-O3", "-march=native", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math")
-#: Without the vectors of members, which not every compiler knows.
+#: Without vector types, which not every compiler has.
 PLAIN = "-DPLAIN"
-#: Flags, best first; the next are tried where a compiler refuses some.
+#: Flags, best first; a compiler that refuses some is tried with the next.
 FLAGS: tuple[tuple[str, ...], ...] = (
     (*FASTEST, DIRECT, *WRITTEN_OUT, *COMMON),
     (*FASTEST, DIRECT, *COMMON),
     ("-O3", "-fopenmp-simd", "-fno-math-errno", *COMMON),
     ("-O2", PLAIN, *COMMON),
 )
-#: Bounds on a compiler that hangs: asked for its version, and at work.
+#: The most time of a compiler, for its version and to compile.
 VERSION_SECONDS, MOST_SECONDS = 10.0, 120.0
-#: How much of what a compiler says is told: a path, and the reason after it.
+#: Characters of a compiler's message in an error: a path and the reason after it.
 MOST_SAID = 400
 #: Lines of /proc/cpuinfo that name instructions, on x86, ARM, RISC-V and POWER.
 _INSTRUCTIONS = ("flags", "features", "isa", "cpu", "cpu part", "model name")
@@ -55,15 +54,15 @@ _INSTRUCTIONS = ("flags", "features", "isa", "cpu", "cpu part", "model name")
 @final
 @dataclass(frozen=True)
 class Compiler:
-    """A command that compiles C, and what it says of itself."""
+    """A command that compiles C, and its version."""
 
     command: tuple[str, ...]
     version: str
 
 
 def compilers() -> Iterator[Compiler]:
-    """Yield the compilers that there are and that answer, best first."""
-    commands = [*map(_found, (os.environ.get("CC", ""), "cc", "gcc", "clang"))]
+    """Yield the installed compilers that work, best first."""
+    commands = [*map(_command, (os.environ.get("CC", ""), "cc", "gcc", "clang"))]
     if find_spec("ziglang") is not None:
         commands.append((sys.executable, "-m", "ziglang", "cc"))
     for command in filter(None, dict.fromkeys(commands)):
@@ -72,16 +71,16 @@ def compilers() -> Iterator[Compiler]:
 
 
 def passed_by(taken: Compiler) -> str:
-    """Return what ``$CC`` says if it is not the compiler that was taken; nothing otherwise."""
+    """Return ``$CC`` if it names another compiler than the one taken, else ""."""
     wanted = os.environ.get("CC", "").strip()
-    return wanted if wanted and _found(wanted) != taken.command else ""
+    return wanted if wanted and _command(wanted) != taken.command else ""
 
 
-def _found(text: str) -> tuple[str, ...]:
-    """Return a command with the path of its program, or nothing if there is none."""
+def _command(text: str) -> tuple[str, ...]:
+    """Return a command with the path of its program, () if there is none."""
     try:
         program, *options = shlex.split(text)
-    except ValueError:  # no words, or a quote that is not closed
+    except ValueError:  # an empty text, or a quote that is not closed
         return ()
     path = shutil.which(program)
     return (path, *options) if path else ()
@@ -107,7 +106,7 @@ def build(compiler: Compiler, flags: Sequence[str], sources: Sequence[Path], lib
 
 
 def _call(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[str]:
-    """Run a command without input; its words are never read by a shell."""
+    """Run a command without input and without a shell."""
     try:
         with subprocess.Popen(
             words,
@@ -134,15 +133,15 @@ def _call(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[s
 
 @cache
 def processor() -> str:
-    """Return the kind and instructions of the processor, which compiled code depends on."""
-    found = [sys.platform, platform.machine(), platform.processor()]
+    """Return the kind and instructions of the processor, on which compiled code depends."""
+    kind = [sys.platform, platform.machine(), platform.processor()]
     try:
         cpuinfo = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
     except OSError:
-        return "\n".join(found)
-    known: dict[str, str] = {}  # of the first processor listed
+        return "\n".join(kind)
+    first: dict[str, str] = {}  # of the first processor listed
     for line in cpuinfo.splitlines():
         key, _, value = line.partition(":")
         if key.strip().lower() in _INSTRUCTIONS:
-            known.setdefault(key.strip().lower(), value.strip())
-    return "\n".join([*found, *(f"{key}: {value}" for key, value in sorted(known.items()))])
+            first.setdefault(key.strip().lower(), value.strip())
+    return "\n".join([*kind, *(f"{key}: {value}" for key, value in sorted(first.items()))])

@@ -23,7 +23,7 @@ from piezo_sym.run.engine.library import CACHE, Sources, read_source, shared_lib
 from piezo_sym.run.engine.records import INT, LONG, POINTER, ParameterRecords, at
 from piezo_sym.run.module import GeneratedModule, held, row_count
 
-#: Of which records each function of a module gives rows; of none: one number.
+#: The records of the rows of each function of a module; "" for a single number.
 _ROWS = {
     "rhs": "STATES",
     "jacobian": "STATES",
@@ -44,18 +44,18 @@ def engine_of(module: GeneratedModule) -> Engine:
     """Return the compiled engine of a module, loaded from a file with its .c and .h beside it."""
     sources = Sources(module.NAME, read_source(module, ".h"), read_source(module, ".c"))
     environment = tuple(map(os.environ.get, ("CC", "PATH", CACHE, "HOME")))
-    found = _engine(module, sources, environment)  # type: ignore[arg-type]  # a module can be a key
-    if isinstance(found, EngineError):
-        raise found.with_traceback(None)
-    return found
+    engine = _engine(module, sources, environment)  # type: ignore[arg-type]  # modules are hashable
+    if isinstance(engine, EngineError):
+        raise engine.with_traceback(None)
+    return engine
 
 
 @lru_cache(maxsize=64)
 def _engine(
     module: GeneratedModule, sources: Sources, environment: tuple[str | None, ...]
 ) -> Engine | EngineError:
-    """Return a module's engine, or why there is none, kept: compilers that fail may take long."""
-    del environment  # it tells one attempt from another
+    """Return a module's engine or its error, which is cached, too, as failures may take long."""
+    del environment  # a key of the cache alone
     try:
         return Engine(module, shared_library(sources), ParameterRecords(module), sources)
     except EngineError as error:
@@ -67,9 +67,9 @@ def _engine(
 class Engine:
     """The functions of a generated module, compiled; arguments and results as in the module.
 
-    x is (n, *batch); u is (inputs,) or (inputs, *batch); p is the module's `Parameters`. Results of
-    one shape may be put into `out`, a C-contiguous array apart from x and u: new memory for many
-    states costs as much as their rates.
+    x is (n, *batch); u is (inputs,) or (inputs, *batch); p is the module's `Parameters`. `out` may
+    be a C-contiguous array for the result, apart from x and u: new memory for many states costs as
+    much as their rates.
     """
 
     module: GeneratedModule
@@ -81,7 +81,7 @@ class Engine:
         """Return the state at t = 0, shape (n,), for the inputs u (inputs,) at t = 0."""
         u = _array(u, len(self.module.INPUTS), "inputs").ravel()
         out = np.empty(row_count(self.module.STATES, p))
-        structure = self.structure(p)  # a name of its own keeps the arrays of its lanes alive
+        structure = self.structure(p)  # the name keeps its arrays of lanes alive
         self.function("initial_state")(at(u), ctypes.byref(structure.value), at(out))
         return out
 
@@ -89,41 +89,41 @@ class Engine:
         """Return another function of the module, computed in C."""
         if name not in _ROWS:
             raise AttributeError(name)
-        return partial(self._called, name)
+        return partial(self._call, name)
 
-    def _called(
+    def _call(
         self, name: str, x: ArrayLike, *more: Any, out: FloatArray | None = None
     ) -> FloatArray:
-        """Return a function's values; `more` is u, of a function that takes inputs, and p."""
-        *given, p = more
+        """Return a function's values; `more` is p, or u and p for a function of inputs."""
+        *u, p = more
         n, rows = row_count(self.module.STATES, p), self._rows(name, p)
         states = _array(x, n, "states")
-        batch, structure = states.shape[1:], self.structure(p)  # it keeps its lanes' arrays alive
+        batch, structure = states.shape[1:], self.structure(p)  # keeps its arrays of lanes alive
         columns = np.ascontiguousarray(states.reshape(n, prod(batch)))
-        inputs = np.ascontiguousarray(self._inputs(given[0], batch)) if given else np.empty(0)
+        inputs = np.ascontiguousarray(self._inputs(u[0], batch)) if u else np.empty(0)
         shape = {"jacobian": (n, n), "energy": (), "entropy": ()}.get(name, (rows,))
-        found = _place(out, (*shape, *batch))
+        result = _output(out, (*shape, *batch))
         sizes = n, inputs.shape[0], prod(shape)
         space = np.empty(
             LONG.in_dll(self.library, f"{self.module.NAME}_tile").value * (sum(sizes) + 1)
         )
         self.function("of_columns")(
-            *(self.loop(name), at(columns), at(inputs), ctypes.byref(structure.value), at(found)),
+            *(self.loop(name), at(columns), at(inputs), ctypes.byref(structure.value), at(result)),
             *(*map(LONG, (prod(batch), *sizes)), INT(inputs.ndim == 2), at(space)),
         )
-        return found
+        return result
 
     def _rows(self, name: str, p: Any) -> int:
         if name == "margins":
             return len(self.module.DOMAIN)
         return row_count(getattr(self.module, _ROWS[name]), p) if _ROWS[name] else 1
 
-    def function(self, word: str) -> Any:
-        """Return a function of the library by its own name."""
-        return getattr(self.library, f"{self.module.NAME}_{word}")
+    def function(self, name: str) -> Any:
+        """Return the C function MODEL(name)."""
+        return getattr(self.library, f"{self.module.NAME}_{name}")
 
     def loop(self, name: str) -> ctypes.c_void_p:
-        """Return the loop of a function over columns, for `of_columns` and `of_runs`."""
+        """Return the address of a function's loop over columns, for `of_columns` and `of_runs`."""
         return ctypes.cast(self.function(f"{name}_columns"), POINTER)
 
     def _inputs(self, u: ArrayLike, batch: tuple[int, ...]) -> FloatArray:
@@ -143,7 +143,7 @@ def _array(value: ArrayLike, rows: int, what: str) -> FloatArray:
     return array
 
 
-def _place(out: FloatArray | None, shape: tuple[int, ...]) -> FloatArray:
+def _output(out: FloatArray | None, shape: tuple[int, ...]) -> FloatArray:
     if out is None:
         return np.empty(shape)
     if out.shape != shape or out.dtype != float or not out.flags.carray:
@@ -161,20 +161,18 @@ class Members:
         self._kept = engine.structure.many(parameters)
 
     def inside(self, x: FloatArray, u: FloatArray) -> NDArray[np.bool_]:
-        """Return which states (runs, k, n) lie in the domain, and have a finite rate, (runs, k)."""
+        """Return whether states (runs, k, n) lie in the domain with finite rates, (runs, k)."""
         module = self._engine.module
         margins = self("margins", x, len(module.DOMAIN), u)
-        finite = np.isfinite(self("rhs", x, x.shape[2], u))
-        holding = held(module, np.moveaxis(margins, 2, 0))
-        good: NDArray[np.bool_] = np.all(holding, axis=0) & np.all(finite, axis=2)
-        return good
+        finite = np.all(np.isfinite(self("rhs", x, x.shape[2], u)), axis=2)
+        return np.asarray(finite & np.all(held(module, np.moveaxis(margins, 2, 0)), axis=0))
 
     def __call__(
         self, name: str, x: FloatArray, rows: int, u: FloatArray | None = None
     ) -> FloatArray:
         """Return a function's rows (runs, k, rows) of states (runs, k, n).
 
-        Inputs (k, inputs), where it takes any, are those of all runs; arrays are C-contiguous.
+        Inputs (k, inputs), if it takes any, are the same for all runs; arrays are C-contiguous.
         """
         out = np.empty((*x.shape[:2], rows))
         inputs = np.empty((1, 0)) if u is None else u

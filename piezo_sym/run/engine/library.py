@@ -1,8 +1,8 @@
 """The C beside a module, compiled into a shared library in the user's cache, and loaded.
 
-Input: a module, or the texts of its .c and .h.  Output: its library.  A library is named by all
-that it depends on (texts, flags, compiler, processor), is built aside and moved into place in one
-step: any number of processes may ask at once, and none ever sees half a file.
+Input: a module, or the texts of its .c and .h.  Output: its library.  The name of a library is a
+hash of all that it depends on (texts, flags, compiler, processor).  It is built in a temporary
+folder and moved into place atomically, so any number of processes may compile at once.
 """
 
 import ctypes
@@ -34,16 +34,16 @@ from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, pas
 from piezo_sym.run.module import GeneratedModule
 
 Layout = Literal["one", "many", "lanes", "slopes"]
-#: What is compiled; the other files are included there.
+#: The files to compile, which include the others.
 UNITS = ("driver.c", "stages.c")
 ENDING = ".dylib" if sys.platform == "darwin" else ".so"
-#: Of the file with a library's digest; of folders in which one is compiled, and their age [s] where
-#: a killed compilation has left one.
+#: The ending of the file with a library's digest; the prefix of folders in which one is compiled,
+#: and the age [s] at which one is left over from a killed compilation.
 DIGEST, BUILD, LEFT_SECONDS = ".sha256", ".build-", 3600.0
-#: What says something of a spec's values in its texts of C: comments, and the initializer.
+#: The parts of C that depend on a spec's values: comments, and the initializer.
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _VALUES = re.compile(r"^#define \w+_DEFAULTS \{ \\\n(?:.*\\\n)*\}$", re.MULTILINE)
-#: Which variable says where caches are.
+#: The environment variable for the folder of caches.
 CACHE = "HOME" if sys.platform == "darwin" else "XDG_CACHE_HOME"
 
 
@@ -54,12 +54,12 @@ class EngineWarning(UserWarning):
 @final
 @dataclass(frozen=True)
 class Sources:
-    """The texts of one module: its name, ``<name>.h``, ``<name>.c``; and what is made of them.
+    """The texts of one module, ``<name>.h`` and ``<name>.c``, and the options of its library.
 
-    A library has the module's functions; or, if it is one of steps, those of so many stages. For
-    steps there is also ``<name>_step.c``, and what lies in vectors: numbers of "one" run do not,
-    "many" runs side by side, or the "lanes" of its banks; and whether they are dissipative. With
-    "slopes" it has no steps, but the derivatives of one.
+    Without `stages` a library has the module's functions; with them, its steps, from
+    ``<name>_step.c``. `layout` says what vectors hold: "many" runs, the "lanes" of banks, or the
+    stages of "one" run; with "slopes" the library has the derivatives of a step. `lossy` steps are
+    dissipative.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Sources:
     lossy: bool = False
 
     def files(self) -> dict[str, str]:
-        """Return what to compile, by file name: without values, with which it would be the same."""
+        """Return the texts to compile by file name, without values, on which no code depends."""
         header = _VALUES.sub("", self.header)
         texts = {f"{self.name}.h": header, f"{self.name}.c": self.source}
         if self.stages:
@@ -87,7 +87,7 @@ class Sources:
 
 
 def read_source(module: GeneratedModule, ending: str) -> str:
-    """Return the text beside a module, ``<model>.c`` for ".c", checked to be of its spec."""
+    """Return the text of ``<model><ending>`` beside a module, checked to be of its spec."""
     file = source_path(module, ending)
     text = _text(file)
     if text is None or f"spec sha256 {module.SPEC_SHA256}" not in text:
@@ -97,13 +97,13 @@ def read_source(module: GeneratedModule, ending: str) -> str:
 
 
 def source_path(module: GeneratedModule, ending: str) -> Path:
-    """Return where the text beside a module is."""
-    own = Path(getattr(module, "__file__", None) or f"{module.NAME}.py")
-    return own.with_name(f"{module.NAME}{ending}")
+    """Return the path of ``<model><ending>`` beside a module."""
+    file = Path(getattr(module, "__file__", None) or f"{module.NAME}.py")
+    return file.with_name(f"{module.NAME}{ending}")
 
 
 def _text(file: Path) -> str | None:
-    """Return a file's text, or None without one; it is read again when it changes."""
+    """Return a file's text, or None if there is no file; it is read again after a change."""
     try:
         status = file.stat()
     except OSError:
@@ -113,7 +113,7 @@ def _text(file: Path) -> str | None:
 
 @lru_cache(maxsize=64)
 def _read(file: Path, changed: int, size: int) -> str | None:
-    del changed, size  # they tell one text from another
+    del changed, size  # keys of the cache alone
     try:
         return read_text(file)
     except FileError as error:
@@ -121,7 +121,7 @@ def _read(file: Path, changed: int, size: int) -> str | None:
 
 
 def shared_library(sources: Sources) -> ctypes.CDLL:
-    """Return the library of some texts, compiled if need be, loaded."""
+    """Return the loaded library of some texts, which are compiled if it is not in the cache."""
     path = library(sources)
     try:
         return ctypes.CDLL(str(path))
@@ -131,7 +131,7 @@ def shared_library(sources: Sources) -> ctypes.CDLL:
 
 
 def library(sources: Sources) -> Path:
-    """Return the library of a module; it is compiled if it is not in the cache."""
+    """Return the path of the library of some texts, compiled if it is not in the cache."""
     first: EngineError | None = None
     for compiler in compilers():
         for options in FLAGS:
@@ -140,7 +140,7 @@ def library(sources: Sources) -> Path:
             except EngineError as error:
                 first = first or error
                 if isinstance(error.__cause__, TimeoutExpired):
-                    break  # other flags will not wake it
+                    break  # it hangs with other flags, too
                 continue
             if wanted := passed_by(compiler):
                 why = first.what if first else "it does not run"
@@ -163,26 +163,26 @@ def cache_folder() -> Path:
 def _flags(sources: Sources, flags: tuple[str, ...]) -> tuple[str, ...]:
     """Return the flags for some texts.
 
-    What a compiler makes vectors of it may round otherwise: steps of many runs side by side, and of
-    one alone, shall give the same numbers.
+    Automatic vectorization may change rounding, but steps of many runs in vectors, and of one run,
+    must give equal numbers.
     """
-    alike = sources.stages and sources.layout != "lanes"
-    return (*flags, "-fno-tree-vectorize", "-fno-openmp-simd") if alike else flags
+    exact = sources.stages and sources.layout != "lanes"
+    return (*flags, "-fno-tree-vectorize", "-fno-openmp-simd") if exact else flags
 
 
 def _key(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> str:
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     parts = (*compiler.command, compiler.version, *flags, processor())
     for part in (*sources.files().values(), *parts):
-        found.update(part.encode() + b"\0")
-    return found.hexdigest()[:32]
+        digest.update(part.encode() + b"\0")
+    return digest.hexdigest()[:32]
 
 
 def _cached(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> Path:
-    """Return a compiled library, in the cache or else in a folder of this process alone."""
+    """Return a compiled library in the cache, or else in a temporary folder of this process."""
     place = Path(_key(sources, compiler, flags)) / f"{sources.name}{ENDING}"
     path = cache_folder() / place
-    if _whole(path):
+    if _intact(path):
         return path
     try:
         _build(sources, compiler, flags, path)
@@ -191,7 +191,7 @@ def _cached(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> Pat
         where, remedy = path_text(cache_folder()), f"set {CACHE} to a folder that can be written"
         try:
             path = temporary_folder() / place
-            if not _whole(path):
+            if not _intact(path):
                 _build(sources, compiler, flags, path)
         except (OSError, FileError) as both:
             raise EngineError(why, where, remedy=remedy) from both
@@ -199,11 +199,11 @@ def _cached(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> Pat
     return path
 
 
-def _whole(path: Path) -> bool:
-    """Return whether a library is there as it was compiled: a damaged one would end Python."""
+def _intact(path: Path) -> bool:
+    """Return whether a library exists and has its digest: a damaged one would crash Python."""
     try:
         return _digest(path) == path.with_suffix(DIGEST).read_text(encoding="ascii")
-    except (OSError, ValueError):  # a folder that cannot be read holds none
+    except (OSError, ValueError):
         return False
 
 
@@ -212,7 +212,7 @@ def _digest(path: Path) -> str:
 
 
 def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: Path) -> None:
-    """Compile beside the library's place, then move the result there."""
+    """Compile in a folder beside the library's path, then move the result there."""
     path.parent.mkdir(parents=True, exist_ok=True)
     _clean(path.parent)
     with tempfile.TemporaryDirectory(prefix=BUILD, dir=path.parent) as temporary:
@@ -231,7 +231,7 @@ def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: P
 
 
 def _clean(folder: Path) -> None:
-    """Remove what compilations have left that were killed, an hour ago at least."""
+    """Remove the folders of compilations that were killed at least an hour ago."""
     for left in folder.glob(f"{BUILD}*"):
         with suppress(OSError):
             if time.time() - left.stat().st_mtime > LEFT_SECONDS:

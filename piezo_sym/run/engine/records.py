@@ -1,7 +1,7 @@
-"""Records of C for Python: those that the files of this folder declare, and a model's parameters.
+"""C structures for Python: those declared in the files of this folder, and a model's parameters.
 
 Input: the declarations, and a module's `Parameters`, of one run or of many.  Output: ctypes
-structures, their addresses, and what their pointers point into.
+structures, their addresses, and the arrays to which they point.
 """
 
 import ctypes
@@ -22,22 +22,22 @@ POINTER, LONG, INT, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_int, ctype
 _DECLARED = ("trajectory.c", "batch.c", "step_once.c", "derivatives.c")
 _NUMBERS = {"double": DOUBLE, "long": LONG}
 
-#: Parameters whose structures are kept: single runs ask for the same ones again and again.
+#: The number of parameters whose structures are cached: calls of single runs use the same ones.
 REMEMBERED = 256
 
 
 @cache
 def c_record(name: str) -> Any:
-    """Return MODEL(name) as a ctypes structure; its one declaration is that in C.
+    """Return MODEL(name) as a ctypes structure, from its declaration in C.
 
     Fields are numbers, `double` or `long`, and pointers.
     """
     text = re.sub(r"/\*.*?\*/", "", c_source(*_DECLARED), flags=re.DOTALL)
-    found = re.search(rf"typedef struct {{([^{{}}]*)}} MODEL\({name}\);", text)
-    if not found:
+    declaration = re.search(rf"typedef struct {{([^{{}}]*)}} MODEL\({name}\);", text)
+    if not declaration:
         msg = f"no file declares a record {name}"
         raise LookupError(msg)
-    return type(name, (ctypes.Structure,), {"_fields_": list(_fields(found[1]))})
+    return type(name, (ctypes.Structure,), {"_fields_": list(_fields(declaration[1]))})
 
 
 def _fields(declarations: str) -> Iterator[tuple[str, Any]]:
@@ -52,9 +52,9 @@ def _fields(declarations: str) -> Iterator[tuple[str, Any]]:
 
 @cache
 def record_dtype(name: str) -> np.dtype[Any]:
-    """Return MODEL(name) for NumPy: an array of records has one for each field."""
-    found: np.dtype[Any] = np.dtype(c_record(name))
-    return found
+    """Return the NumPy type of an array of MODEL(name)."""
+    dtype: np.dtype[Any] = np.dtype(c_record(name))
+    return dtype
 
 
 def at(array: NDArray[Any]) -> ctypes.c_void_p:
@@ -63,7 +63,7 @@ def at(array: NDArray[Any]) -> ctypes.c_void_p:
 
 
 def addresses(array: NDArray[Any]) -> NDArray[np.uintp]:
-    """Return the address of each part of an array along its first axis."""
+    """Return the address of each entry of an array along its first axis."""
     first, apart = array.ctypes.data, array.strides[0]
     return (first + apart * np.arange(len(array))).astype(np.uintp)
 
@@ -71,7 +71,7 @@ def addresses(array: NDArray[Any]) -> NDArray[np.uintp]:
 @final
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """A C structure, and what it and its pointers lie in."""
+    """A C structure, and the arrays that it and its pointers need."""
 
     value: ctypes.Structure
     kept: tuple[object, ...]
@@ -80,7 +80,7 @@ class Structure:
 @final
 @dataclass(frozen=True, eq=False)
 class Structures:
-    """C structures of many runs, their addresses, and what their pointers point into."""
+    """The addresses of C structures of many runs, and the arrays that they need."""
 
     addresses: NDArray[np.uintp]
     kept: tuple[object, ...]
@@ -88,10 +88,10 @@ class Structures:
 
 @final
 class ParameterRecords:
-    """A module's `Parameters` as the structure of its header; called, it gives that of one run.
+    """Converts a module's `Parameters` to the structure of its header.
 
-    Fields are in the order of the spec, a number each, or a pointer to one number per lane; then
-    the sizes of banks.
+    Its fields are in the order of the spec, a number each, or a pointer to one number per lane;
+    then the sizes of banks.
     """
 
     def __init__(self, module: GeneratedModule) -> None:
@@ -103,18 +103,18 @@ class ParameterRecords:
         fields += [(f"count_{n}", LONG) for n, _ in enumerate(module.BANKS)]
         none = [("none", ctypes.c_char)]
         self._kind: Any = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
-        self._remembered = lru_cache(maxsize=REMEMBERED)(self._made)
+        self._cached = lru_cache(maxsize=REMEMBERED)(self._structure)
 
     def __call__(self, p: Any) -> Structure:
         """Return the structure of one run."""
         try:
-            return self._remembered(p)
-        except TypeError:  # a list among the values cannot be a key
-            return self._made(p)
+            return self._cached(p)
+        except TypeError:  # a list among the values is not hashable
+            return self._structure(p)
 
-    def _made(self, p: Any) -> Structure:
-        found = self.many([p])
-        return Structure(self._kind.from_address(int(found.addresses[0])), found.kept)
+    def _structure(self, p: Any) -> Structure:
+        one = self.many([p])
+        return Structure(self._kind.from_address(int(one.addresses[0])), one.kept)
 
     def many(self, parameters: Sequence[Any]) -> Structures:
         """Return the structures of runs whose banks have equal sizes."""

@@ -1,11 +1,9 @@
-"""The inputs of a run as C takes them: waves, polynomials piece by piece, or functions to call.
+"""The inputs of a run in C: waves, piecewise polynomials, or functions to call.
 
-Input: `Inputs`.  Output: `InputRecords`.  A signal that C does not know becomes polynomials on
-pieces of its segment, so that C has its values without a call of Python; one that would take some
-thousand pieces is called.
+Input: `Inputs`.  Output: `InputRecords`.  A signal that C cannot compute is approximated by
+piecewise polynomials, so that C does not call Python; one that needs some thousand pieces is
+called.
 """
-
-from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass
@@ -21,39 +19,38 @@ from piezo_sym.run.samples import Samples
 from piezo_sym.run.signals import Chirp, Constant, Ramp, Signal, Sine, Square, Step
 
 _CALLED = ctypes.CFUNCTYPE(DOUBLE, DOUBLE)
-#: Terms of a piece, and how large the last of them may be, as a part of the signal's size.
+#: Terms of a piece, and the greatest value of the last two, over the signal's size.
 TERMS, EXACT = 12, 1e-13
-#: Pieces of a run to begin with, so that nothing is missed that lasts as long as the time between
-#: two samples of `jumps`; how often pieces may be halved, and how many there may be.
+#: The first number of pieces of a run, so that their nodes are as dense as the samples of `jumps`;
+#: the most times that pieces are halved, and the most pieces.
 FIRST, ROUNDS, MOST = 192, 16, 5000
 
 
 @final
 class InputRecords:
-    """The segments of some inputs in C, an array of MODEL(segment), and what they point into.
+    """The segments of inputs in C, an array of MODEL(segment), and the arrays that they need.
 
-    `raised` is what functions of time have raised, which C cannot pass on.
+    `raised` are exceptions of functions of time, which C cannot pass on.
     """
 
     def __init__(self, inputs: Inputs) -> None:
         self._inputs = inputs
         self.raised: list[Exception] = []
         self._kept: list[Any] = []
-        made = [self._segment(segment) for segment in inputs.segments]
-        self.segments: Any = (c_record("segment") * len(made))(*made)
+        segments = [self._segment(segment) for segment in inputs.segments]
+        self.segments: Any = (c_record("segment") * len(segments))(*segments)
 
     def address(self, t: float) -> int:
-        """Return the address of the segment that begins at t [s], or in which t lies."""
+        """Return the address of the segment that begins at t [s] or contains it."""
         now = sum(one.stop <= t for one in self._inputs.segments[:-1])
         return ctypes.addressof(self.segments) + now * ctypes.sizeof(c_record("segment"))
 
     def _segment(self, segment: Segment) -> Any:
-        signals = self._inputs.signals
-        found = (c_record("signal") * max(1, len(signals)))(
-            *(self._signal(signal, segment.low, segment.high) for signal in signals)
-        )
-        self._kept.append(found)
-        return c_record("segment")(stop=segment.stop, signals=ctypes.addressof(found))
+        low, high = segment.low, segment.high
+        signals = [self._signal(signal, low, high) for signal in self._inputs.signals]
+        array = (c_record("signal") * max(1, len(signals)))(*signals)
+        self._kept.append(array)
+        return c_record("segment")(stop=segment.stop, signals=ctypes.addressof(array))
 
     def _signal(self, signal: Signal, low: float, high: float) -> Any:
         wave = c_record("signal")
@@ -65,11 +62,11 @@ class InputRecords:
             case Chirp(amplitude, start, stop, duration, offset) if high <= duration:
                 return wave(amplitude, start, (stop - start) / duration, 0.0, offset)
 
-        if found := pieces_of(signal, low, high, self._inputs.duration):
-            self._kept.append(found)
-            pieces, terms = found.coefficients.shape
-            edges, coefficients = found.edges.ctypes.data, found.coefficients.ctypes.data
-            return wave(edges=edges, coefficients=coefficients, pieces=pieces, terms=terms)
+        if pieces := pieces_of(signal, low, high, self._inputs.duration):
+            self._kept.append(pieces)
+            count, terms = pieces.coefficients.shape
+            edges, coefficients = pieces.edges.ctypes.data, pieces.coefficients.ctypes.data
+            return wave(edges=edges, coefficients=coefficients, pieces=count, terms=terms)
 
         def called(t: float) -> float:
             try:
@@ -85,17 +82,14 @@ class InputRecords:
 @final
 @dataclass(frozen=True)
 class Pieces:
-    """A function by its coefficients (pieces, terms) in Chebyshev's polynomials on each piece.
-
-    `edges` (pieces + 1,) are times [s].
-    """
+    """A piecewise polynomial: times `edges` (pieces + 1,) [s], and Chebyshev coefficients."""
 
     edges: FloatArray
-    coefficients: FloatArray
+    coefficients: FloatArray  # (pieces, terms)
 
 
 def pieces_of(signal: Signal, low: float, high: float, duration: float) -> Pieces | None:
-    """Return a signal as polynomials on [low, high]; None if that takes too many pieces."""
+    """Return a signal as polynomials on [low, high]; None if it needs too many pieces."""
     if isinstance(signal, Samples):
         return _lines(signal, low, high)
     at = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
@@ -110,21 +104,20 @@ def pieces_of(signal: Signal, low: float, high: float, duration: float) -> Piece
         values = np.asarray(signal(middle[:, None] + half[:, None] * at))
         size = max(size, float(np.abs(values).max(initial=0.0)))
         terms = values @ to_terms
-        good = np.abs(terms[:, -2:]).max(axis=1) <= EXACT * size
-        done.append((starts[good], terms[good]))
-        if good.all():
+        exact = np.abs(terms[:, -2:]).max(axis=1) <= EXACT * size
+        done.append((starts[exact], terms[exact]))
+        if exact.all():
             break
-        bad = ~good
-        starts = np.concatenate([starts[bad], middle[bad]])
-        stops = np.concatenate([middle[bad], stops[bad]])
-        if starts.size + sum(part.size for part, _ in done) > MOST:
+        starts, middle, stops = starts[~exact], middle[~exact], stops[~exact]
+        starts, stops = np.concatenate([starts, middle]), np.concatenate([middle, stops])
+        if starts.size + sum(first.size for first, _ in done) > MOST:
             return None
     else:
         return None
-    found = np.concatenate([part for part, _ in done])
-    order = np.argsort(found)
+    starts = np.concatenate([first for first, _ in done])
+    order = np.argsort(starts)
     coefficients = np.concatenate([terms for _, terms in done])[order]
-    return Pieces(np.append(found[order], high), np.ascontiguousarray(coefficients))
+    return Pieces(np.append(starts[order], high), np.ascontiguousarray(coefficients))
 
 
 def _lines(signal: Samples, low: float, high: float) -> Pieces:
