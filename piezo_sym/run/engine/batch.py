@@ -155,8 +155,7 @@ class Batch:
         """Return the sizes of the model's arrays, by MODEL(sizes_of)."""
         module = self._engine.module
         sizes = np.zeros(7 + len(module.BANKS) + len(module.STATES), dtype=np.dtype("l"))
-        first = ctypes.c_void_p(int(self._structures.addresses[0]))
-        self.function("sizes_of")(first, at(sizes))
+        self.function("sizes_of")(ctypes.byref(self._structures.value), at(sizes))
         return sizes
 
     @property

@@ -70,18 +70,10 @@ def addresses(array: NDArray[Any]) -> NDArray[np.uintp]:
 
 @final
 @dataclass(frozen=True, eq=False)
-class Structure:
-    """A C structure, and the arrays that it and its pointers need."""
+class Structures:
+    """C structures of some runs: the first, their addresses, and the arrays that they need."""
 
     value: ctypes.Structure
-    kept: tuple[object, ...]
-
-
-@final
-@dataclass(frozen=True, eq=False)
-class Structures:
-    """The addresses of C structures of many runs, and the arrays that they need."""
-
     addresses: NDArray[np.uintp]
     kept: tuple[object, ...]
 
@@ -103,18 +95,14 @@ class ParameterRecords:
         fields += [(f"count_{n}", LONG) for n, _ in enumerate(module.BANKS)]
         none = [("none", ctypes.c_char)]
         self._kind: Any = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
-        self._cached = lru_cache(maxsize=REMEMBERED)(self._structure)
+        self._cached = lru_cache(maxsize=REMEMBERED)(lambda p: self.many([p]))
 
-    def __call__(self, p: Any) -> Structure:
+    def __call__(self, p: Any) -> Structures:
         """Return the structure of one run."""
         try:
             return self._cached(p)
         except TypeError:  # a list among the values is not hashable
-            return self._structure(p)
-
-    def _structure(self, p: Any) -> Structure:
-        one = self.many([p])
-        return Structure(self._kind.from_address(int(one.addresses[0])), one.kept)
+            return self.many([p])
 
     def many(self, parameters: Sequence[Any]) -> Structures:
         """Return the structures of runs whose banks have equal sizes."""
@@ -136,7 +124,8 @@ class ParameterRecords:
                 records[f"field_{n}"] = values
         for n, bank in enumerate(self._module.BANKS):
             records[f"count_{n}"] = lanes(parameters[0], bank)
-        return Structures(addresses(records), tuple(kept))
+        first = self._kind.from_address(records.ctypes.data)
+        return Structures(first, addresses(records), tuple(kept))
 
 
 def _spread(value: Any, count: int) -> FloatArray:
