@@ -81,8 +81,8 @@ def simulate(
     _check_ending(out, events)
     units = Units(spec)
     signals = dict(pairs(inputs or (), "--input", units.signal))
-    times_options = {"duration": duration, "t0": t0, "times": times, "stop": stop}
-    step_options = {"rtol": rtol, "step": step, "order": order, "method": method}
+    span = {"duration": duration, "t0": t0, "times": times, "stop": stop}
+    solver = {"rtol": rtol, "step": step, "order": order, "method": method, "outputs": outputs}
     result = _run(
         spec,
         out,
@@ -91,9 +91,8 @@ def simulate(
         initial=_start(continued, dict(pairs(initial or (), "--initial", numbers))),
         events=dict(pairs(events or (), "--event", lambda text, _: text)),
         dissipative_start=dissipative_start,
-        outputs=outputs if outputs in (None, "all") else outputs.split(","),
-        **times_options,
-        **step_options,
+        **span,
+        **solver,
     )
     _report(result, [*units.assumed, *_assumed(signals)], out)
 
@@ -102,6 +101,8 @@ def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
     from piezo_sym.api import simulate as run
 
     of_spec = about(spec, SpecError, NetworkError, ProofError)
+    if options["outputs"] not in (None, "all"):
+        options["outputs"] = options["outputs"].split(",")
     if _is_store(out):
         options["store"] = out
     with warnings_as_lines(), keeping(out), of_spec:
