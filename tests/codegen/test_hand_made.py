@@ -167,7 +167,11 @@ def well(energy):
     "energy", ["k*q**4/4", pytest.param("k*log(1 + q**2)", marks=pytest.mark.long)]
 )
 def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
-    """Newton's method may end at what is no root, and quadrature miss a well within a step."""
+    """Newton's method may end at what is no root, and quadrature miss a well within a step.
+
+    A change that stagnates is accepted up to 1e-12 of a state (MOST_NOISE), in each of 20 to 600
+    steps.
+    """
     module = well(energy).module(tmp_path)
     draw = np.random.default_rng(1)
     ran = 0
@@ -180,7 +184,7 @@ def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
         except RunError:  # a body cannot take in all that
             continue
         ran += 1
-        assert np.abs(run.energy_residual).max() <= 1e-11 * run.energy.max()
+        assert np.abs(run.energy_residual).max() <= 1e-10 * run.energy.max()
     assert ran > 10
 
 

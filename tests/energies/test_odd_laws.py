@@ -65,8 +65,8 @@ def test_it_is_proved_and_has_the_energy_of_quadrature(law):
 BUSY = """
 import time
 from piezo_sym.algebra import integrals
-integrals.SECONDS, find = 1, integrals._found
-integrals._found = lambda *request: time.sleep(1.2) or find(*request)
+integrals.SECONDS, find = 1, integrals._antiderivative
+integrals._antiderivative = lambda *request: time.sleep(1.2) or find(*request)
 integrals.main()
 """
 
