@@ -45,7 +45,7 @@ class LongError(Exception):
 
 def accumulate(form: Form, label: Label, coefficient: Any) -> None:
     """Add a multiple of `label` to a combination, in place; zeros drop out."""
-    total = form.get(label, 0) + coefficient
+    total = form[label] + coefficient if label in form else coefficient
     if total:
         form[label] = total
     else:
@@ -54,8 +54,12 @@ def accumulate(form: Form, label: Label, coefficient: Any) -> None:
 
 def combine(form: Form, other: Mapping[Any, Any], factor: Any) -> None:
     """Add `factor` times another combination, in place."""
-    for label, coefficient in other.items():
-        accumulate(form, label, factor * coefficient)
+    if factor in (1, -1):  # as most are: there is no fraction to cancel
+        terms = ((label, c if factor == 1 else -c) for label, c in other.items())
+    else:
+        terms = ((label, factor * c) for label, c in other.items())
+    for label, term in terms:
+        accumulate(form, label, term)
 
 
 def solve(
