@@ -130,10 +130,10 @@ def steady_branches(
     curves: list[Curve] = []
     ends: list[tuple[int, CurvePoint, bool]] = []
     for curve in _curves(strobe, span):
-        found = tuple(folds(strobe, curve))
-        ends += found
-        at = {n: point for n, point, _ in found}  # in place of the points nearest to them
-        curves.append(tuple(at.get(n, point) for n, point in enumerate(curve)))
+        curve_ends = tuple(folds(strobe, curve))
+        ends += curve_ends
+        exact = {n: point for n, point, _ in curve_ends}  # replace the points nearest to them
+        curves.append(tuple(exact.get(n, point) for n, point in enumerate(curve)))
     jumps = (_jump(strobe, curves, point, up) for _, point, up in ends)
     return Branches(tuple(curves), tuple(jumps))
 
@@ -143,8 +143,8 @@ def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[Curve]:
     reached: list[FloatArray] = []
     for log_f, way in ((span[0, 0], 1.0), (span[0, 1], -1.0)):
         end = strobe.at(float(np.exp(log_f)))
-        asked = grid(*np.exp(span[1]).tolist())
-        known = [state for state in scan(end, asked, end.start) if state]
+        temperatures = grid(*np.exp(span[1]).tolist())
+        known = [state for state in scan(end, temperatures, end.start) if state]
         for zero in zeros(end, known):
             place = np.array([log_f, np.log(zero.temperature)])
             if any(np.max(np.abs(place - other)) < SAME for other in reached):

@@ -144,8 +144,8 @@ def periodic_steady_states(
     `periodic_steady_state`, but the result may be empty.
     """
     strobe, accuracy = _read(module, inputs, frequency, parameters, initial, rtol)
-    found = zeros(strobe, _settled_states(strobe, temperatures))
-    return tuple(_steady_state(strobe, zero, accuracy) for zero in found)
+    steady = zeros(strobe, _settled_states(strobe, temperatures))
+    return tuple(_steady_state(strobe, zero, accuracy) for zero in steady)
 
 
 def _read(
@@ -223,22 +223,23 @@ def _steady_state(strobe: Stroboscope, zero: Settled, rtol: float) -> SteadyStat
         x = fixed_point(strobe, x, slope)
         # half the step at order 2: the error is a third of the change
         error = float(np.max(np.abs(x - before) / strobe.look(x).size)) / 3
-    found = _described(strobe, x, slope)
-    _refuse_residual(strobe, found, rtol)
-    return found
+    state = _described(strobe, x, slope)
+    _refuse_residual(strobe, state, rtol)
+    return state
 
 
-def _refuse_residual(strobe: Stroboscope, found: SteadyState, rtol: float) -> None:
+def _refuse_residual(strobe: Stroboscope, state: SteadyState, rtol: float) -> None:
     """Raise `RunError` if a period with adaptive steps does not repeat: the fixed were too long."""
     allowed = min(MOST_RESIDUAL, RESIDUAL * max(rtol, ORBIT_RTOL))
-    if found.residual > allowed * max(1.0, found.multiplier):
-        what = f"the state found at {found.temperature:.6g} K does not repeat: it is off by "
-        what += f"{found.residual:.1g} of its size after a period"
-        where = f"{strobe.where} at {found.frequency:g} Hz"
+    if state.residual > allowed * max(1.0, state.multiplier):
+        what = f"the state found at {state.temperature:.6g} K does not repeat: it is off by "
+        what += f"{state.residual:.1g} of its size after a period"
+        where = f"{strobe.where} at {state.frequency:g} Hz"
         raise RunError(what, where, remedy="simulate until it settles")
 
 
 def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyState:
+    """Return the record of the state x (n,), with a period by adaptive steps."""
     orbit = strobe.run(x, times=SAMPLES + 1, rtol=ORBIT_RTOL)
     states = strobe.states_of(orbit)
     T = np.asarray(orbit[f"T_{strobe.module.BODIES[0].name}"].values, dtype=float)

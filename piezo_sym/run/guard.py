@@ -64,9 +64,9 @@ def check_limits(
     if not stops or slack == np.inf:
         return
     with np.errstate(all="ignore"):
-        found = by_name(module.ELEMENTS, p, module.elements(x, u, p))
+        values = by_name(module.ELEMENTS, p, module.elements(x, u, p))
     for stop in stops:
-        effort, limit = np.broadcast_arrays(found[f"{stop}.effort"], found[f"{stop}{LIMIT}"])
+        effort, limit = np.broadcast_arrays(values[f"{stop}.effort"], values[f"{stop}{LIMIT}"])
         beyond = np.abs(effort) > limit * (1 + slack)
         if np.any(beyond):
             at = np.argmax(beyond)

@@ -56,12 +56,9 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
 def read_sizes(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, int]:
     """Return the number of lanes of each bank."""
     default, values = module.Parameters(), _checked_keys(module, given)
-    sizes = {}
-    for bank in module.BANKS:
-        name = f"{bank}_count"
-        size = values.get(name, lanes(default, bank))
-        sizes[bank] = integer(size, f"simulate.parameters.{name}", 1, MOST_LANES)
-    return sizes
+    sizes = {bank: values.get(f"{bank}_count", lanes(default, bank)) for bank in module.BANKS}
+    where = "simulate.parameters"
+    return {b: integer(n, f"{where}.{b}_count", 1, MOST_LANES) for b, n in sizes.items()}
 
 
 def _checked_keys(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, Any]:
@@ -174,8 +171,8 @@ def start_of(
     start = None if t0 is None else number(t0, "simulate.t0")
     run: Any = initial
     if not hasattr(run, "data_vars"):  # no Dataset: xarray is not loaded to ask
-        own = getattr(run, "parameters", None)  # of an OperatingPoint
-        return start or 0.0, run, {**own, **(parameters or {})} if own else parameters
+        point = getattr(run, "parameters", None)  # of an OperatingPoint
+        return start or 0.0, run, {**point, **(parameters or {})} if point else parameters
     model, sha256 = (str(run.attrs.get(key, "")) for key in ("model", "spec_sha256"))
     if "time" not in run.dims or not model:
         raise UsageError("this Dataset is no run of simulate()", WHERE)

@@ -199,8 +199,8 @@ def magnitudes(
     t, scale, evaluations = start, system.scale(x), 0
     known = [(t, scale)]
     with suppress(PiezoError):
-        for t, met, cost in islice(coarse_run(system, x), most):
-            scale, evaluations = met, evaluations + cost
+        for t, largest, cost in islice(coarse_run(system, x), most):
+            scale, evaluations = largest, evaluations + cost
             if np.any(scale > 2 * known[-1][1]):
                 known.append((t, scale))
     if t - start < duration * (1 - NEAR):
@@ -215,7 +215,7 @@ def coarse_run(system: DrivenModule, x: FloatArray) -> Iterator[tuple[float, Flo
     The scales are unknown at first, so LSODA restarts where a state exceeds ten times the scale of
     its tolerance.
     """
-    scale = met = system.scale(x)
+    scale = largest = system.scale(x)
     for segment in system.inputs.segments:
         rest: Segment | None = segment
         while rest:
@@ -226,10 +226,10 @@ def coarse_run(system: DrivenModule, x: FloatArray) -> Iterator[tuple[float, Flo
                 cost, spent = solver.nfev - spent, solver.nfev
                 if np.any(system.violated(x, segment.at(t))):
                     return
-                met = np.maximum(met, system.scale(x))
-                yield t, met, cost
-                if np.any(met > GROWTH * scale) and t < segment.stop * (1 - NEAR):
-                    scale, rest = met, replace(segment, start=t)
+                largest = np.maximum(largest, system.scale(x))
+                yield t, largest, cost
+                if np.any(largest > GROWTH * scale) and t < segment.stop * (1 - NEAR):
+                    scale, rest = largest, replace(segment, start=t)
                     break
 
 

@@ -172,9 +172,9 @@ def simulate(
     samples = sample_times(times, step, length, start)
     values = read_parameters(module, given)
     chosen = choose_method(module, named, step)
-    asked, slack = read_outputs(module, outputs), slack_of(initial, parameters)
-    how = dissipative_start, progress, asked, slack
-    request = Request(module, values, inputs, chosen, tolerance, fixed, *how)
+    elements, slack = read_outputs(module, outputs), slack_of(initial, parameters)
+    options = dissipative_start, progress, elements, slack
+    request = Request(module, values, inputs, chosen, tolerance, fixed, *options)
     if store is not None:
         return streamed(request, start, samples, state, (events, stop), store)
     planned = request.planned(start, length, state)

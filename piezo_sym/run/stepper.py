@@ -99,16 +99,16 @@ class Stepper:
         self._name, self._h = checked(module).NAME, positive(step, "Stepper.step")
         stages, engine = read_order(order, "Stepper.order") // 2, engine_of(module)
         self._many = isinstance(parameters, Sequence)
-        values, known = read_plants(module, parameters), read_held(module, inputs, self._h)
+        values, held = read_plants(module, parameters), read_held(module, inputs, self._h)
         self.states = tuple(row_names(module.STATES, values[0]))
         self.inputs = tuple(record.name for record in module.INPUTS)
         self.outputs = tuple(f"y_{record.name}" for record in module.OUTPUTS)
-        self._u = np.tile(known.segments[0].at(0.0), (len(values), 1))
+        self._u = np.tile(held.segments[0].at(0.0), (len(values), 1))
         self._y = np.zeros((len(values), len(self.outputs)))
         stepping = Stepping(stages, 0.0, self._h, self._h, fixed=self._h)
         self._plants = [
-            Plant(DrivenModule(module, one, known), engine, initial, stepping, u, y)
-            for one, u, y in zip(values, self._u, self._y, strict=True)
+            Plant(DrivenModule(module, p, held), engine, initial, stepping, u, y)
+            for p, u, y in zip(values, self._u, self._y, strict=True)
         ]
         self._calls = calls_of(self._plants, integer(every, "Stepper.every", 1))
         self._at = ctypes.byref(self._calls)
@@ -129,7 +129,7 @@ class Stepper:
         return f"<Stepper of {self._name}: step {self._h:g} s, time {self.time:g} s>"
 
     def _shown(self, rows: FloatArray, quanta: FloatArray | None = None) -> FloatArray:
-        """Return a row (k,) of one plant, or those of all plants as (k, plants); a copy."""
+        """Return a copy of rows, rounded to quanta: (k,) of one plant, (k, plants) of several."""
         if quanta is not None:
             size = np.where(quanta > 0, quanta, 1.0)
             rows = np.where(quanta > 0, np.round(rows / size) * size, rows)
