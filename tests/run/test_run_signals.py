@@ -217,3 +217,16 @@ def test_a_time_that_stands_twice_is_a_jump():
     ours = simulate("piezo_stack", inputs=drive, duration=0.01, rtol=1e-8)
     theirs = simulate("piezo_stack", inputs={"V_in": step(0.005, 0, 10)}, duration=0.01, rtol=1e-8)
     assert np.abs(ours.q - theirs.q).max() < 1e-9 * float(np.abs(theirs.q).max())
+
+
+@pytest.mark.parametrize("held", [400, 600])
+def test_a_command_that_is_held_between_samples_may_jump_often(held):
+    """Half of the distances between its times are those of jumps, which take no time."""
+    ends = np.arange(held + 1) * 5e-4
+    command = samples(np.repeat(ends, 2)[1:-1], np.repeat(np.sin(0.1 * np.arange(held)), 2))
+    found = command.max_step(ends[-1])
+    assert found == (pytest.approx(5e-4) if held > 500 else np.inf)
+    run = simulate(
+        "piezo_stack", inputs={"V_in": command}, duration=ends[-1], times=[0.0, ends[-1]]
+    )
+    assert run.attrs["accepted_steps"] < 20 * held
