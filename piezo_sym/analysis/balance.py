@@ -23,7 +23,8 @@ from typing import Any, TypeAlias, final
 
 import numpy as np
 
-from piezo_sym.analysis.stroboscope import FLOOR, Period, Stroboscope
+from piezo_sym.analysis.conserved import FLOOR
+from piezo_sym.analysis.stroboscope import Period, Stroboscope
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray, positive_range
 

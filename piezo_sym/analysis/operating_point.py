@@ -6,8 +6,9 @@ an `OperatingPoint`, or a `RunError` that says why there is none.
     rhs(x, u) = 0       in all rows but the entropies of held bodies
 
 Steps of the implicit Euler method, each longer than the last, follow the motion from the initial
-state towards rest; Newton's method ends the search.  Directions in which the rates do not change (a
-current that circulates within dead zones) keep their initial values.
+state towards rest; Newton's method ends the search.  Linear functions of the state that the motion
+conserves, such as the difference in length of parallel springs, keep their initial values; so do
+directions in which the rates do not change (a current that circulates within dead zones).
 """
 
 from collections.abc import Mapping
@@ -107,9 +108,7 @@ def operating_point(
     check_limits(module, p, start, u)
     held = _held(module, p, start, temperatures)
     free = np.setdiff1d(np.arange(start.size), list(held.values()))
-    search = RestSearch(module, p, u, free)
-    x, size = search.approach(start)
-    x = search.at_rest(x, size)
+    search, x, size = RestSearch.of(module, p, u, start, free).find(start)
     undetermined = search.undetermined(x, size)
     _refuse_open_bodies(module, p, x, undetermined)
     return _described(search, x, parameters or {}, list(held), undetermined)
@@ -168,7 +167,8 @@ def _described(
     for name in held:
         body = [record.name for record in module.BODIES].index(name)
         holding[name] = -temperatures[name] * float(rates[entropy_row(module, p, x, body)])
-    eigenvalues = np.linalg.eigvals(search.slope(x))
+    jacobian = search.jacobian(x)[np.ix_(search.free, search.free)]
+    eigenvalues = np.linalg.eigvals(jacobian)
     margin = ROUND_OFF * float(np.max(np.abs(eigenvalues), initial=0.0))
     outputs = by_name(module.OUTPUTS, p, module.outputs(x, u, p))
     return OperatingPoint(

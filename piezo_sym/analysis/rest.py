@@ -1,14 +1,21 @@
 """The search for a state of rest: long steps of the implicit Euler method, then Newton's method.
 
-Input: a generated module, its parameters and constant inputs, the rows of the free states.  Output:
-the state x (n,) at which their rates are zero, or a `RunError` that names a state that moves on.
+Input: a generated module, its parameters and constant inputs, the rows of the free states, a start.
+Output: a state x (n,) at which their rates are zero, or a `RunError` that names one that moves on.
+
+The search has coordinates z, x = start + basis z.  At first these are the free states; once the
+linear functions that the motion conserves are known, as many fewer.  Steps that are long beside
+the motion would lose these functions to round-off.
 """
 
-from dataclasses import dataclass
-from typing import Any, final
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
+from piezo_sym.analysis.conserved import basis_of, conserved_functions
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.module import GeneratedModule, held, row_name
@@ -22,28 +29,64 @@ ROUND_OFF = 1e-13
 COUNTS = 1e-6  # the least relative change of a body's temperature that counts as a motion
 UNDETERMINED = 1e-6  # components of a unit vector below this are round-off
 SINGULAR = 1e-10  # over the greatest singular value of the scaled Jacobian
+JACOBIANS = 8  # states on the way whose Jacobians tell which functions are conserved
+
+Rows: TypeAlias = np.ndarray[Any, np.dtype[np.intp]]
+
+
+@final
+@dataclass(frozen=True)
+class Approach:
+    """The way to a state of rest."""
+
+    states: list[FloatArray]  # x (n,) after each step, with the start
+    size: FloatArray  # the greatest magnitude of each coordinate (k,); 0 where none moved
+    moving: FloatArray | None  # rates (k,) at the end of a way that does not end at rest
 
 
 @final
 @dataclass(frozen=True)
 class RestSearch:
-    """A search for the rest of the states `free` of a module under constant inputs."""
+    """A search for a state of rest of a module under constant inputs."""
 
     module: GeneratedModule
     parameters: Any
     u: FloatArray
-    free: np.ndarray[Any, np.dtype[np.intp]]
+    free: Rows  # of the states that are not held
+    rows: Rows  # of the coordinates z (k,) among the states
+    basis: FloatArray  # dx/dz (n, k)
+
+    @classmethod
+    def of(
+        cls, module: GeneratedModule, parameters: Any, u: FloatArray, start: FloatArray, free: Rows
+    ) -> RestSearch:
+        """Return the search in which all free states are coordinates."""
+        return cls(module, parameters, u, free, free, np.eye(start.size)[:, free])
+
+    def keeping(self, way: Approach) -> RestSearch:
+        """Return the search that keeps the linear functions which are conserved on the way."""
+        states = way.states[:: -(-len(way.states) // JACOBIANS)]
+        jacobians = [self.jacobian(x)[np.ix_(self.free, self.free)] for x in states]
+        changes = np.column_stack([*map(self.rates, way.states), *jacobians])
+        size = np.where(way.size > 0, way.size, 1.0)
+        functions = conserved_functions(changes, size)
+        coordinates, basis = basis_of(functions, size)
+        return replace(self, rows=self.rows[coordinates], basis=self.basis @ basis)
 
     def rates(self, x: FloatArray) -> FloatArray:
-        """Return dx/dt of the free rows."""
+        """Return dz/dt (k,)."""
         with np.errstate(all="ignore"):
-            return np.asarray(self.module.rhs(x, self.u, self.parameters)[self.free])
+            return np.asarray(self.module.rhs(x, self.u, self.parameters)[self.rows])
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """Return the Jacobian (n, n) of all rates by all states."""
+        with np.errstate(all="ignore"):
+            return np.asarray(self.module.jacobian(x, self.u, self.parameters))
 
     def slope(self, x: FloatArray) -> FloatArray:
-        """Return the Jacobian of the free rows by the free states."""
+        """Return the Jacobian (k, k) of the rates dz/dt by z."""
         with np.errstate(all="ignore"):
-            full = self.module.jacobian(x, self.u, self.parameters)
-        return np.asarray(full[np.ix_(self.free, self.free)])
+            return np.asarray(self.jacobian(x)[self.rows] @ self.basis)
 
     def inside(self, x: FloatArray) -> bool:
         """Return whether x is in the domain and has finite rates."""
@@ -51,62 +94,79 @@ class RestSearch:
             margins = self.module.margins(x, self.u, self.parameters)
         return bool(np.all(held(self.module, margins)) and np.isfinite(self.rates(x)).all())
 
-    def moved(self, x: FloatArray, move: FloatArray) -> FloatArray:
-        """Return x with its free rows moved."""
-        y = x.copy()
-        y[self.free] += move
-        return y
+    def find(self, start: FloatArray) -> tuple[RestSearch, FloatArray, FloatArray]:
+        """Return the search with the fewest coordinates, the state at rest, and their sizes.
 
-    def approach(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return a state almost at rest, and the sizes of the free states on the way to it."""
-        if not self.inside(x):
+        Raises
+        ------
+        RunError : the start is outside the domain, or there is no state of rest on the way.
+        """
+        if not self.inside(start):
             what = "the initial state is outside the domain, or has no rates"
             raise RunError(what, self._model, remedy="give another as 'initial', or other inputs")
-        eye = np.eye(self.free.size)
-        size: FloatArray = np.maximum(np.abs(x[self.free]), self._heating_sizes(x))
+        way = self.approach(start)
+        search = self.keeping(way)
+        if search.rows.size < self.rows.size:
+            sizes, way = way.size, search.approach(start)
+        if way.moving is not None:
+            raise search.error(way.moving, way.size)
+        x = search.at_rest(way.states[-1], way.size)
+        if search.rows.size < self.rows.size:
+            self._refuse_motion(x, sizes)
+        return search, x, way.size
+
+    def approach(self, x: FloatArray) -> Approach:
+        """Return the way from x to a state almost at rest."""
+        states, size = [x], np.maximum(np.abs(x[self.rows]), self._heating_sizes(x))
         if not np.any(self.rates(x)):
-            return x, size
-        first = step = 1e-3 / (float(np.linalg.norm(self.slope(x), 2)) or 1.0)
-        move: FloatArray = np.zeros(self.free.size)
+            return Approach(states, size, None)
+        slope = self.slope(x)
+        first = step = 1e-3 / (_fastest(slope) or float(np.linalg.norm(slope, 2)) or 1.0)
+        move: FloatArray = np.zeros(self.rows.size)
         for _ in range(MOST_STEPS):
             if step > LONGEST * first:
                 break
-            matrix = eye - step * self.slope(x)
-            move = np.asarray(np.linalg.solve(matrix, step * self.rates(x)), dtype=float)
-            ahead = self.moved(x, move)
+            slope = self.slope(x)
+            matrix = np.eye(self.rows.size) - step * slope
+            move = _solved(matrix, step * self.rates(x), size)
+            ahead = x + self.basis @ move
             round_off = self._round_off_sizes(x, matrix, step)
-            reached = np.maximum.reduce([size, np.abs(ahead[self.free]), np.abs(move), round_off])
+            reached = np.maximum.reduce([size, np.abs(ahead[self.rows]), np.abs(move), round_off])
             if not self.inside(ahead) or not self._contracts(matrix, step, move, ahead, reached):
                 step /= GROWTH
                 continue
             x, size = ahead, reached
-            if _relative(move, size) <= AT_REST and step * np.linalg.norm(self.slope(x), 2) > 1:
-                return x, size
+            states.append(x)
+            if _relative(move, size) <= AT_REST and step * _fastest(slope) > 1:
+                return Approach(states, size, None)
             step *= GROWTH
-        raise self._error(move / step, size)
+        return Approach(states, size, move / step)
 
     def _round_off_sizes(self, x: FloatArray, matrix: FloatArray, step: float) -> FloatArray:
         """Return the sizes over which moves caused by round-off of the rates are `ROUND_OFF`."""
-        terms = step * np.abs(self.slope(x)) @ np.abs(x[self.free])
+        terms = step * np.abs(self.jacobian(x)[self.rows]) @ np.abs(x)
         moves: FloatArray = np.abs(np.linalg.inv(matrix)) @ terms
         return moves * np.finfo(float).eps / ROUND_OFF
 
     def _heating_sizes(self, x: FloatArray) -> FloatArray:
-        """Return the change of each free state that changes a temperature by `COUNTS`, else 0."""
+        """Return the change of each coordinate that changes a temperature by `COUNTS`, else 0."""
         step = 1e-6 * np.maximum(np.abs(x), 1.0)
         with np.errstate(all="ignore"):
             temperatures = self.module.temperatures(x, self.parameters)[:, None]
             changed = self.module.temperatures(x[:, None] + np.diag(step), self.parameters)
             change = np.max(np.abs(changed / temperatures - 1.0), axis=0, initial=0.0)
             size = COUNTS * step / change
-        return np.asarray(np.where(change > 0, size, 0.0)[self.free], dtype=float)
+        return np.asarray(np.where(change > 0, size, 0.0)[self.rows], dtype=float)
 
     def _contracts(
         self, matrix: FloatArray, step: float, move: FloatArray, ahead: FloatArray, size: FloatArray
     ) -> bool:
-        """Return whether a second move of Newton's method is much smaller than the first."""
-        again = np.asarray(np.linalg.solve(matrix, step * self.rates(ahead) - move), dtype=float)
-        return _relative(again, size) <= CONTRACTION * _relative(move, size) + ROUND_OFF
+        """Return whether a second move of Newton's method is much smaller than the first.
+
+        Moves as small as those at rest may be round-off.
+        """
+        again = _solved(matrix, step * self.rates(ahead) - move, size)
+        return _relative(again, size) <= CONTRACTION * max(_relative(move, size), AT_REST)
 
     def at_rest(self, x: FloatArray, size: FloatArray) -> FloatArray:
         """Return the state of rest near x, by Newton's method with the smallest moves."""
@@ -115,28 +175,34 @@ class RestSearch:
             kept = values > SINGULAR * values[0] if values.size else values > 0
             parts = left.T[kept] @ (self.rates(x) / row_size) / values[kept]
             move = -scale * (right[kept].T @ parts)
-            if not self.inside(self.moved(x, move)):
+            ahead = x + self.basis @ move
+            if not self.inside(ahead):
                 break
-            x = self.moved(x, move)
+            x = ahead
             if _relative(move, size) <= ROUND_OFF:
                 break
+        self._refuse_motion(x, size)
+        return x
+
+    def _refuse_motion(self, x: FloatArray, size: FloatArray) -> None:
+        """Raise `RunError` if a coordinate moves at x."""
         *_, row_size, _ = self._factors(x, size)
         if np.max(np.abs(self.rates(x) / row_size), initial=0.0) > AT_REST:
-            raise self._error(self.rates(x), size)
-        return x
+            raise self.error(self.rates(x), size)
 
     def _factors(
         self, x: FloatArray, size: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return the singular value decomposition of the scaled Jacobian, and its scales.
 
-        The scales are those of rows (n,) and columns (n,). A state that is 0 and never moved has
-        no size: its column gives its scale.
+        The scales are those of rows (k,) and columns (k,). A coordinate that is 0 and never moved
+        has no size: its column gives its scale.
         """
         scale = np.where(size > 0, size, 1.0)
-        row_size = np.max(np.abs(self.slope(x) * scale), axis=1, initial=0.0)
+        slope = self.slope(x) * scale
+        row_size = np.max(np.abs(slope), axis=1, initial=0.0)
         row_size[row_size == 0] = 1.0
-        scaled = self.slope(x) * scale / row_size[:, None]
+        scaled = slope / row_size[:, None]
         column = np.max(np.abs(scaled), axis=0, initial=0.0)
         column = np.where((size > 0) | (column == 0), 1.0, column)
         left, values, right = np.linalg.svd(scaled / column)
@@ -146,11 +212,12 @@ class RestSearch:
         """Return the rows that differ between x and other states of rest."""
         _, values, right, *_ = self._factors(x, size)
         open_ = right[values <= SINGULAR * values[0]] if values.size else right
-        return [int(row) for row in self.free[np.any(np.abs(open_) > UNDETERMINED, axis=0)]]
+        coordinates = np.any(np.abs(open_) > UNDETERMINED, axis=0)
+        return [int(row) for row in np.flatnonzero(self.basis[:, coordinates].any(axis=1))]
 
-    def _error(self, rates: FloatArray, size: FloatArray) -> RunError:
+    def error(self, rates: FloatArray, size: FloatArray) -> RunError:
         """Return the error of a search without result, with the state of the largest rate."""
-        row = int(self.free[int(np.argmax(np.abs(rates) / np.where(size > 0, size, np.inf)))])
+        row = int(self.rows[int(np.argmax(np.abs(rates) / np.where(size > 0, size, np.inf)))])
         name = row_name(self.module.STATES, self.parameters, row)
         what = f"no state of rest is found: '{name}' goes on and on"
         remedy = "give other inputs"
@@ -164,6 +231,18 @@ class RestSearch:
         return f"model '{self.module.NAME}'"
 
 
+def _solved(matrix: FloatArray, right: FloatArray, size: FloatArray) -> FloatArray:
+    """Return the z (k,) with matrix z = right, solved in units of the coordinates' sizes."""
+    scale = np.where(size > 0, size, 1.0)
+    scaled = matrix * scale / scale[:, None]
+    return np.asarray(scale * np.linalg.solve(scaled, right / scale), dtype=float)
+
+
+def _fastest(slope: FloatArray) -> float:
+    """Return the greatest magnitude of the eigenvalues [1/s]."""
+    return float(np.max(np.abs(np.linalg.eigvals(slope)), initial=0.0))
+
+
 def _relative(move: FloatArray, size: FloatArray) -> float:
-    """Return the largest part of its size by which a state moves."""
+    """Return the largest part of its size by which a coordinate moves."""
     return float(np.max(np.abs(move) / np.where(size > 0, size, 1.0), initial=0.0))

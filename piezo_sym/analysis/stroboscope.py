@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
+from piezo_sym.analysis.conserved import conserved_functions
 from piezo_sym.analysis.repeating import Driven, refuse_unperiodic, steps_needed
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run import simulate
@@ -41,12 +42,9 @@ if TYPE_CHECKING:
     import xarray
 
 SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
-FLOOR = 1e-15  # of sizes, which are not 0
 SPREAD = (-2.0, 2.0)  # powers of ten between which random states are spread, over their sizes
 ENTROPY_SPREAD = 1e-2  # of the entropy, over its size
 SPARE = 16  # random states beyond the least number
-RANK_TOLERANCE = 1e-12  # singular values below are round-off
-SHARE_TOLERANCE = 1e-9  # smaller coefficients of conserved quantities are round-off
 CONSTANT = 1e-9  # the largest change of a conserved quantity in a period, over the sizes of states
 
 
@@ -173,15 +171,11 @@ class Stroboscope:
         except RunError:  # the start lies outside the domain
             return none
         size = self._system.scale(np.abs(states).max(axis=1))
-        rates = self._random_rates(size) / size[:, None]
+        rates = self._random_rates(size)
         rates = rates[:, np.isfinite(rates).all(axis=0) & rates.any(axis=0)]
         if rates.shape[1] < size.size + SPARE:
             return none
-        rates /= np.linalg.norm(rates, axis=0)
-        rows = np.maximum(np.abs(rates).max(axis=1), FLOOR)[:, None]
-        left, sizes, _ = np.linalg.svd(rates / rows, full_matrices=False)
-        shares = np.where(np.abs(left) < SHARE_TOLERANCE, 0.0, left)[:, sizes < RANK_TOLERANCE].T
-        functions = shares / rows.T / size
+        functions = conserved_functions(rates, size)
         kept = np.ptp(functions @ states, axis=1) <= CONSTANT * (np.abs(functions) @ size)
         return np.asarray(functions[kept])
 

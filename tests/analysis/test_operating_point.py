@@ -7,7 +7,7 @@ import pytest
 
 from piezo_sym import load, operating_point, simulate
 from piezo_sym.errors import RunError, UsageError
-from piezo_sym.spec.load import starter
+from piezo_sym.spec.load import parse, starter
 from tests.networks.test_acceptance import SPECS
 
 pytestmark = pytest.mark.filterwarnings("error")
@@ -109,3 +109,58 @@ def test_wrong_arguments_are_named(given: dict[str, object], said: str) -> None:
 def test_inputs_outside_the_domain_are_refused() -> None:
     with pytest.raises(RunError, match="outside the domain"):
         operating_point("piezo_stack", inputs={"T_e": 290.0})
+
+
+PRESS = """
+[model]
+name = "press"
+[parameters]
+A = { value = 80, unit = "cm**2" }
+m = { value = 120, unit = "kg" }
+d = { value = 2000, unit = "N*s/m" }
+k = { value = 5, unit = "N/mm" }
+C_h = { value = 2e-13, unit = "m**3/Pa" }
+K_l = { value = 3e-10, unit = "m**3/s/Pa" }
+T_0 = { value = 293, unit = "K" }
+c = { value = 30, unit = "kJ/K" }
+lam = { value = 20, unit = "W/K" }
+k_e = { value = 2e5, unit = "N/mm" }
+gap = { value = 50, unit = "mm" }
+[inputs]
+p_s = { unit = "bar" }
+T_e = { unit = "K", default = 293 }
+[domain]
+assume = ["d >= 0", "K_l >= 0", "lam >= 0", "T_e > 0"]
+[elements]
+pump = { kind = "pressure_source", between = ["p", "tank"], input = "p_s" }
+valve = { kind = "orifice", between = ["p", "cyl"], flow = "K_l*dp", heats = "oil" }
+volume = { kind = "accumulator", between = ["cyl", "tank"], capacitance = "C_h", state = "V" }
+seal = { kind = "damper", between = ["ram", "wall"], force = "d*v", heats = "oil" }
+spring = { kind = "spring", between = ["ram", "wall"], stiffness = "k", state = "x" }
+bump = { kind = "spring", between = ["ram", "wall"], force = "k_e*max(q - gap, 0)", state = "x_e" }
+mass = { kind = "mass", at = "ram", mass = "m", state = "p" }
+oil = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+air = { kind = "ambient", body = "oil", conductance = "lam", input = "T_e" }
+[elements.ram]
+kind = "cylinder"
+hydraulic = ["cyl", "tank"]
+translation = ["ram", "wall"]
+area = "A"
+"""
+
+
+@pytest.mark.parametrize("pressure", [1e4, 1e5, 1e6])
+@pytest.mark.parametrize("start", [0.0, 1e-3])
+def test_springs_in_parallel_keep_their_difference(pressure: float, start: float) -> None:
+    """A p = k x + k_e max(x_e - gap, 0) with x_e - x as at the start; V is 10 million times less.
+
+    The slowest motion, a minute, is 10 million times as slow as the fastest.
+    """
+    A, k, k_e, gap = 80e-4, 5e3, 2e8, 50e-3
+    found = operating_point(parse(PRESS), inputs={"p_s": pressure}, initial={"x_e": start})
+    free, touching = A * pressure / k, (A * pressure + k_e * (gap - start)) / (k + k_e)
+    x = free if free + start < gap else touching
+    assert found.initial["x"] == pytest.approx(x, rel=1e-12)
+    assert found.initial["x_e"] == pytest.approx(x + start, rel=1e-12)
+    assert found.initial["V"] == pytest.approx(2e-13 * pressure, rel=1e-12)
+    assert (found.undetermined, found.stable) == ((), True)
