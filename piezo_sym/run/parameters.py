@@ -226,8 +226,11 @@ def _entropy_at(
     def excess(entropy: float) -> float:
         y = x.copy()
         y[row] = entropy
-        with np.errstate(over="ignore", divide="ignore"):
-            return float(np.log(module.temperatures(y, p)[body] / T))
+        with np.errstate(all="ignore"):
+            ratio = module.temperatures(y, p)[body] / T
+        if np.isnan(ratio):
+            raise UsageError(f"{T:g} K is out of the body's reach", where)
+        return float(np.log(np.clip(ratio, 1e-300, 1e300)))  # a law may go below 0 K
 
     middle, reach = float(x[row]), 1e-9 * max(1.0, abs(float(x[row])))  # a capacity may be tiny
     while excess(middle - reach) > 0 or excess(middle + reach) < 0:

@@ -164,3 +164,26 @@ def test_springs_in_parallel_keep_their_difference(pressure: float, start: float
     assert found.initial["x_e"] == pytest.approx(x + start, rel=1e-12)
     assert found.initial["V"] == pytest.approx(2e-13 * pressure, rel=1e-12)
     assert (found.undetermined, found.stable) == ((), True)
+
+
+LINEAR = """
+[model]
+name = "block"
+[parameters]
+T_0 = { value = 300, unit = "K" }
+b = { value = 3, unit = "K**2/J" }
+lam = { value = 2, unit = "W/K" }
+[inputs]
+T_e = { unit = "K", default = 293 }
+[domain]
+assume = ["T_e > 0", "lam >= 0", "T > 0", "b > 0"]
+[elements]
+block = { kind = "thermal_mass", temperature = "T_0 + b*S", state = "S" }
+air = { kind = "ambient", body = "block", conductance = "lam", input = "T_e" }
+"""
+
+
+def test_a_body_is_held_at_a_temperature_beyond_twice_its_start() -> None:
+    """The search for S = (T - T_0)/b passes entropies at which the law is below 0 K."""
+    found = operating_point(parse(LINEAR), temperatures={"block": 900.0})
+    assert found.initial["S"] == pytest.approx(200.0, rel=1e-13)
