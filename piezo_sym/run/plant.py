@@ -117,6 +117,13 @@ class Plant:
         """Raise `RunError` if the plant cannot start from the state x (n,)."""
         check_start(self._system, x)
 
+    def inputs_error(self, u: FloatArray, t: float) -> RunError | None:
+        """Return why the inputs u (m,), which act from t [s] on, leave the domain, or None."""
+        x = self.start  # conditions on inputs do not depend on the state
+        if np.any(self._system.violated(x, u)[self._conditions]):
+            return domain_error(self._system, t, x, u)
+        return None
+
     def reset(self) -> None:
         """Go back to the start, with an empty ledger; MODEL(forget) does the rest."""
         self._batch.x[0] = self.start

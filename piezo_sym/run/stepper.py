@@ -210,8 +210,13 @@ class Stepper:
         stored = self._late[(self._taken + size - 1) % size]  # written again if this call fails
         for row, value in zip(stored.T, u, strict=True):
             row[:] = value
-        if size > 1 and not np.all(np.isfinite(stored)):  # C checks those that act
-            raise ValueError
+        if size > 1:  # C checks those that act
+            if not np.all(np.isfinite(stored)):
+                raise ValueError
+            acting = self.time + (size - 1) * int(self._calls[0].steps) * self._h
+            for n, (plant, row) in enumerate(zip(self._plants, stored, strict=True)):
+                if error := plant.inputs_error(row, acting):
+                    raise self._of_plant(error, n)
         self._u[:] = self._late[self._taken % size]
 
     def __reduce__(self) -> NoReturn:
@@ -271,7 +276,10 @@ class Stepper:
     def _refusal(self, u: Sequence[float | FloatArray] | FloatArray, failed: int) -> PiezoError:
         """Return why a plant took no step."""
         self._check(u)
-        error = self._plants[failed].refusal(self.time)
+        return self._of_plant(self._plants[failed].refusal(self.time), failed)
+
+    def _of_plant(self, error: PiezoError, n: int) -> PiezoError:
+        """Return the error with the plant's number, if there are several plants."""
         if self._many:
-            error.where += f", plant {failed + 1} of {len(self._plants)}"
+            error.where += f", plant {n + 1} of {len(self._plants)}"
         return error

@@ -125,18 +125,16 @@ def test_a_measurement_is_a_multiple_of_its_quantum():
 def test_a_call_that_fails_changes_no_plant():
     """The second plant's environment is too cold; the first has been stepped by then, or not."""
     plants = [{"T_0": 296.15}, {"T_0": 297.0}]
-    pair, same = (
-        Stepper("piezo_stack", step=H, every=3, delay=1, parameters=plants) for _ in range(2)
-    )
+    pair, same = (Stepper("piezo_stack", step=H, every=3, parameters=plants) for _ in range(2))
     for stepper in (pair, same):
         stepper.step([0.0, 50.0, 310.0])
-        stepper.step([0.0, [20.0, 30.0], 296.5])
     before = pair.x
     for _ in range(2):
         with pytest.raises(RunError, match=r"'piezo_stack', plant 2 of 2: .* 'T_e > T_0'"):
-            pair.step([0.0, 999.0, 310.0])
+            pair.step([0.0, [20.0, 30.0], 296.5])
         assert np.array_equal(pair.x, before)
-    assert pair.time == same.time == pytest.approx(6 * H)
+    assert pair.time == same.time == pytest.approx(3 * H)
+    assert np.array_equal(*(each.step([0.0, 20.0, 310.0]) for each in (pair, same)))
 
 
 def test_a_step_that_is_not_taken_restores_the_plants_before_it():
@@ -188,3 +186,16 @@ def test_an_input_that_is_no_number_is_named_when_it_is_given():
         late.step([0.0, np.array([1.0, np.nan]), 298.15])
     late.step(U)
     assert late.time == H
+
+
+@pytest.mark.parametrize("plants", [None, [{}, {}]])
+def test_an_input_outside_the_domain_is_refused_when_it_is_given(plants):
+    """Once it waited, no call would succeed any more."""
+    late = Stepper("piezo_stack", step=H, parameters=plants, delay=2)
+    late.step(U)
+    with pytest.raises(RunError, match=rf"at t = {3 * H:g} s: condition 'T_e > ") as error:
+        late.step([0.0, 1.0, -1.0])
+    assert ("plant 1 of 2" in str(error.value)) == bool(plants)
+    for _ in range(4):
+        late.step(U)
+    assert late.time == pytest.approx(5 * H)
