@@ -47,6 +47,18 @@ class PiezoError(Exception):
             parts.append(self.remedy)
         return one_line("; ".join(parts))
 
+    def put_in(self, outer: str) -> None:
+        """Name an outer place, such as a file, in front of the places of an error and its notes.
+
+        Notes, which Python shows below an error, are further errors found with it, a line each.
+        """
+        self.where = f"{outer}: {self.where}" if self.where else outer
+        self.__notes__ = [f"{outer}: {note}" for note in getattr(self, "__notes__", ())]
+
+    def lines(self) -> list[str]:
+        """Return the error and those found with it, a line each."""
+        return [str(self), *getattr(self, "__notes__", ())]
+
 
 @final
 class SpecError(PiezoError):

@@ -75,7 +75,7 @@ def run(words: list[str]) -> int:
         code = app(args=words, prog_name="piezo-sym", standalone_mode=False)
         sys.stdout.flush()
     except PiezoError as error:
-        return _failed(str(error), error.exit_code)
+        return _failed("\npiezo-sym: ".join(error.lines()), error.exit_code)
     except CommandError as error:
         message = one_line(error.format_message()).rstrip(".")
         message = message.replace(", unable to parse string as a number", ", such as 0.1")

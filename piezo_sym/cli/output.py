@@ -30,7 +30,7 @@ def about(spec: str, *kinds: type[PiezoError]) -> Iterator[None]:
     except PiezoError as error:
         name = one_line(Path(spec).name)
         if isinstance(error, kinds or PiezoError) and name not in str(error):
-            error.where = f"{name}: {error.where}" if error.where else name
+            error.put_in(name)
         raise
 
 

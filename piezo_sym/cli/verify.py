@@ -47,8 +47,8 @@ def verify(
     for spec, opinion in second.items():
         faults = opinion.faults(reports[spec].information)
         errors += [ProofError(faults[0], reports[spec].model)] if faults else []
-    for error in errors[:-1]:
-        typer.echo(f"piezo-sym: {error}", err=True)
+    for line in (line for error in errors[:-1] for line in error.lines()):
+        typer.echo(f"piezo-sym: {line}", err=True)
     if errors:
         raise errors[-1]
     if not all(report.proved for report in reports.values()):

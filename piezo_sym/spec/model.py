@@ -23,7 +23,7 @@ from piezo_sym.spec.checks.values import check_values
 from piezo_sym.spec.fields import Included, Tables
 from piezo_sym.spec.flatten import flattened
 from piezo_sym.spec.names import MAX_NAME
-from piezo_sym.spec.problems import first_problem
+from piezo_sym.spec.problems import all_problems
 from piezo_sym.spec.source import component_file, data, read, real
 from piezo_sym.spec.write import spec_hash, to_toml
 
@@ -59,7 +59,7 @@ class Model(Tables):
         try:
             super().__init__(**Reader().complete(tables))
         except ValidationError as error:
-            raise first_problem(error) from None
+            raise all_problems(error) from None
 
     @model_validator(mode="after")
     def _checked(self) -> Model:
@@ -140,7 +140,7 @@ class Reader:
         try:
             return Model(**self.complete(data(text), folder, chain))
         except PiezoError as error:
-            _prefix_place(error, source)
+            error.put_in(source)
             raise
 
     def complete(
@@ -172,10 +172,5 @@ class Reader:
         try:
             return Included(self.file(path, chain), str(given))
         except PiezoError as error:
-            _prefix_place(error, where)
+            error.put_in(where)
             raise
-
-
-def _prefix_place(error: PiezoError, where: str) -> None:
-    """Name an outer place, such as a file, in front of the place of an error."""
-    error.where = f"{where}: {error.where}" if error.where else where

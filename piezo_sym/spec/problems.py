@@ -1,10 +1,11 @@
-"""Field faults in one line: pydantic's list of errors to one `SpecError`.
+"""Field faults, a line each: pydantic's list of errors to one `SpecError` with notes.
 
 Input: a `ValidationError` and the data it is about.  Output: the first fault, with its place as a
-dotted path, what was expected there and, for unknown words, the nearest known one.
+dotted path, what was expected there and, for unknown words, the nearest known one; and as many
+lines of the same kind, its notes, as there are other faults.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any, get_args
 
 from pydantic import ValidationError
@@ -25,22 +26,30 @@ NEEDED = {  # examples of keys whose name alone does not say what to write
 }
 
 
-def first_problem(error: ValidationError) -> SpecError:
-    """Return the first of pydantic's errors as a `SpecError`."""
+#: The faults that may have caused others come first: unknown keys, then missing ones.
+FIRST = ("extra_forbidden", "missing")
+#: The most faults that are shown.
+MOST_FAULTS = 20
+
+
+def all_problems(error: ValidationError) -> SpecError:
+    """Return pydantic's errors as a `SpecError` of the first; the others are its notes."""
     details = error.errors(include_url=False)
-    # a misspelled key explains a missing one, so it comes first
-    first, *others = sorted(details, key=lambda detail: detail["type"] != "extra_forbidden")
-    problem = _problem(first)
-    count = sum(not _explained(other, first, problem) for other in others)
-    more = f"{count} more fault{'s' * (count > 1)} in this spec" if count else ""
-    problem.remedy = "; ".join(filter(None, (problem.remedy, more)))
+    place = {kind: n for n, kind in enumerate(FIRST)}
+    details.sort(key=lambda detail: place.get(detail["type"], len(FIRST)))
+    meant = {(*d["loc"][:-1], _problem(d).remedy) for d in details if d["type"] == FIRST[0]}
+    problem, *others = [_problem(d) for d in details if not _explained(d, meant)]
+    for other in others[: MOST_FAULTS - 1]:
+        problem.add_note(str(other))
+    if more := len(others[MOST_FAULTS - 1 :]):
+        problem.add_note(f"{more} more fault{'s' * (more > 1)} in this spec")
     return problem
 
 
-def _explained(other: ErrorDetails, first: ErrorDetails, problem: SpecError) -> bool:
-    """Return whether a key is missing only because the first fault is its misspelled name."""
-    meant = problem.remedy == f"did you mean '{other['loc'][-1]}'?"
-    return other["type"] == "missing" and meant and other["loc"][:-1] == first["loc"][:-1]
+def _explained(detail: ErrorDetails, meant: Collection[tuple[int | str, ...]]) -> bool:
+    """Return whether a key is missing only because it stands there under a misspelled name."""
+    *table, key = detail["loc"]
+    return detail["type"] == "missing" and (*table, f"did you mean '{key}'?") in meant
 
 
 def _problem(detail: ErrorDetails) -> SpecError:
@@ -91,7 +100,8 @@ def _number(value: object) -> str:
 def _expected(detail: ErrorDetails) -> str:
     if detail["type"] == "tuple_type" and detail["loc"][-1] == "assume":
         return f'a list of conditions, such as ["{detail["input"]}"]'
-    if detail["type"] == "string_type" and isinstance(detail["input"], int | float):
+    number = detail["type"] == "string_type" and isinstance(detail["input"], int | float)
+    if number and "elements" in detail["loc"]:
         key, value = detail["loc"][-1], detail["input"]
         return f'text: {key} = "a", where [parameters] has a = {{ value = {value}, unit = ... }}'
     if detail["type"] in {"tuple_type", "too_long"} and detail["loc"][-1] != "assume":

@@ -170,11 +170,27 @@ def test_the_temperature_needs_a_body_in_a_transducer():
     assert message.startswith("spec: elements.transducer.ratio: 'i' has no meaning here")
 
 
-def test_several_faults_are_counted():
-    message = refused_edit(("value = 3.5e-3", "value = nan"), ("value = 5e5", "value = inf"))
-    assert message.endswith("; 1 more fault in this spec")
-    message = refused_edit(('stiffness = "k"', 'stifness = "k"'), ("value = 5e5", "value = inf"))
-    assert message.endswith("did you mean 'stiffness'?; 1 more fault in this spec")
+def test_every_fault_is_shown_unknown_and_missing_keys_first():
+    text = edited_text(
+        ("value = 3.5e-3", "value = nan"),
+        ('between = ["cap", "gnd"]\ncapacitance', "capacitance"),
+        ('stiffness = "k"', 'stifness = "k"'),
+    )
+    first, second, third = refusal(parse, text).lines()
+    assert first.startswith("spec: elements.spring.stifness: unknown key 'stifness'; did you")
+    assert second.startswith("spec: elements.capacitor.between: is missing; ")
+    assert third.startswith("spec: parameters.M.value: 'nan' does not fit; ")
+
+
+def test_of_very_many_faults_the_rest_are_counted():
+    text = edited_text(("[model]", "[model]\n" + "\n".join(f"x{n} = 1" for n in range(50))))
+    lines = refusal(parse, text).lines()
+    assert len(lines) == 21
+    assert lines[-1] == "spec: 30 more faults in this spec"
+
+
+def test_a_unit_that_is_a_number_is_not_told_to_be_a_parameter():
+    assert "[parameters] has" not in refused_edit(('unit = "kg"', "unit = 3"))
 
 
 def test_a_misspelled_key_is_one_fault():
