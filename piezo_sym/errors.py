@@ -143,6 +143,8 @@ def with_article(noun: str) -> str:
     return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
+#: What to write where dry friction, F_c*sign(v), holds a state at rest: no step crosses the jump.
+STICKING = "friction that sticks is a 'stop', or F_c*tanh(v/v_0) with a small v_0, not F_c*sign(v)"
 #: Names up to this length are similar only if they begin alike: F_0 is not meant to be T_0.
 SHORT = 3
 

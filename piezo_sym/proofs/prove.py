@@ -11,6 +11,7 @@ from fractions import Fraction
 
 import sympy as sp
 
+from piezo_sym.errors import STICKING
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.exact_eval import TooCloseError, all_hold, value_of
 from piezo_sym.expressions.text import spell
@@ -244,7 +245,9 @@ def _refutation(question: Question, values: Mapping[str, Fraction]) -> Finding:
         reason += f", where {condition_text(question.law)} has no value"
     if question.original.op in {"=", "<"}:
         reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
-        reason += "; a law that jumps on purpose says discontinuous = true" * bool(question.meeting)
+        reason += f"; a law that jumps on purpose says discontinuous = true; {STICKING}" * bool(
+            question.meeting
+        )
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
+from piezo_sym.errors import STICKING, PiezoError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import Trajectory
 from piezo_sym.run.engine.batch import Batch, Stepping, collocation_library
@@ -169,8 +169,8 @@ def results_of(
 
 def _stuck_error(system: DrivenModule, t: float, x: FloatArray) -> RunError:
     """Return the error of a run that stopped at t [s] in the state x (n,)."""
-    why = "no step stays in the domain, or a law that jumps holds the state there"
-    remedy = "look at inputs and state; allow more room in [domain]; tanh(v/w) for sign(v)"
+    why = "no step stays in the domain, or a law that jumps (sign) holds the state at its jump"
+    remedy = f"look at inputs and state; allow more room in [domain]; {STICKING}"
     if verdict_of(system.module).startswith(UNPROVED):
         why = f"each step leaves the domain or consumes entropy, and the model is {UNPROVED}"
         remedy = "mend what `piezo-sym verify` refutes; or take method LSODA, which goes on"

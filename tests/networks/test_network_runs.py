@@ -143,6 +143,8 @@ def test_friction_is_right_until_the_block_sticks(accuracy):
     assert np.allclose(found.p, 1 - 2 * found.time, rtol=0, atol=1e-12)
     stop = attempted(lambda: simulate(module, duration=1.0, method=METHOD, **accuracy, **options))
     assert 0.5 - 1 / 32 <= stop <= 0.5 + 1e-9  # where it stands
+    with pytest.raises(RunError, match=r"friction that sticks is a 'stop', or F_c\*tanh"):
+        simulate(module, duration=1.0, method=METHOD, **accuracy, **options)
 
 
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-2}], ids=str)
