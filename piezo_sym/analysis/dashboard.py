@@ -2,7 +2,7 @@
 
 Input: the `xarray.Dataset` of a run.  Output: a Matplotlib figure with one panel per unit of the
 states, inputs, outputs and temperatures; heat released and entropy produced, stacked by process;
-and the residual of the energy balance; without empty panels.
+heat conducted between bodies; and the residual of the energy balance; without empty panels.
 """
 
 from collections.abc import Callable, Iterator
@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from piezo_sym.analysis.style import COLOURS, DASHES, LABEL, SMALL, dress
 from piezo_sym.errors import UsageError, listing, one_line, quote
 from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.dataset import CONDUCTED
 
 Panel: TypeAlias = tuple[str, Callable[[Axes], None]]
 
@@ -94,15 +95,22 @@ def _panels(run: xarray.Dataset) -> Iterator[Panel]:
     for unit, names in _by_unit(run).items():
         yield f"{_shown(names)} [{unit}]", partial(_lines, run=run, names=names)
     sums = (
-        ("heat released [J]", _stack, "heat_"),
-        ("entropy produced [J/K]", _stack, "produced_"),
-        ("energy put in [J]", _lines, "supplied_"),
+        ("heat released [J]", _stack, "heat_", False),
+        (f"{CONDUCTED} [J]", _lines, "heat_", True),
+        ("entropy produced [J/K]", _stack, "produced_", False),
+        ("energy put in [J]", _lines, "supplied_", False),
     )
-    for label, draw, prefix in sums:
-        if names := [str(name) for name in run.data_vars if str(name).startswith(prefix)]:
+    for label, draw, prefix, conducted in sums:
+        names = [str(name) for name in run.data_vars if str(name).startswith(prefix)]
+        if names := [name for name in names if _is_conducted(run[name]) is conducted]:
             yield label, partial(draw, run=run, names=names, prefix=prefix)
     draw = partial(_lines, names=["energy_residual"], prefix="energy_")
     yield "energy residual [J]", partial(draw, run=run)
+
+
+def _is_conducted(variable: xarray.DataArray) -> bool:
+    """Return whether this is the heat of a conduction, of either sign, which is no stack's part."""
+    return str(variable.attrs.get("long_name", "")).startswith(CONDUCTED)
 
 
 def _shown(names: list[str]) -> str:

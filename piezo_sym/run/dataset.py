@@ -38,6 +38,8 @@ Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]",
 Named: TypeAlias = tuple[str, Variable]
 #: The argument that selects quantities of elements, and its value for all of them.
 OUTPUTS, EVERY = "simulate.outputs", "all"
+#: How the heat of a conduction is described: no heat is released, and it may be negative.
+CONDUCTED = "heat conducted"
 
 
 @final
@@ -163,8 +165,10 @@ def named_rows(
     for record, row in zip(records, system.rows(records), strict=True):
         attrs = attributes(record.unit, record.doc or record.name)
         if integral:
-            text = f"{integral[1]} {quote(record.name)} since t = {system.inputs.start:g}"
-            attrs = attributes(integral[0], text)
+            text = f"{integral[1]} {quote(record.name)}"
+            if prefix == "heat_" and record.doc.startswith("conduction "):
+                text = f"{CONDUCTED} by {quote(record.name)} from its first body to its second"
+            attrs = attributes(integral[0], f"{text} since t = {system.inputs.start:g}")
         array = np.moveaxis(values[row], 0, -1) if record.bank else values[row.start]
         over = (*dims, record.bank) if record.bank else dims
         yield f"{prefix}{record.name}", (over, array, attrs)

@@ -61,6 +61,18 @@ def test_every_quantity_has_its_panel():
     ]
 
 
+def test_heat_between_bodies_is_not_released_and_not_stacked():
+    run = simulate("heat_exchanger", duration=1.0, initial={"T_hot": 250.0}, times=11)
+    assert float(run.heat_contact[-1]) < 0
+    assert run.heat_contact.attrs["long_name"] == (
+        "heat conducted by 'contact' from its first body to its second since t = 0"
+    )
+    figure = plot(run)
+    assert "heat released [J]" not in labels(figure)
+    (line,) = panel(figure, "heat conducted").lines
+    assert line.get_ydata()[-1] == run.heat_contact[-1]
+
+
 def test_time_is_named_once_and_its_numbers_stand_under_every_column():
     figure = plot(actuator())
     assert figure.get_supxlabel() == "time [s]"
