@@ -25,6 +25,7 @@ from piezo_sym.expressions.dimensions import (
 )
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp, Expr, Mul, Neg, Node, Num, Sym, names, walk
+from piezo_sym.expressions.units import parse_unit
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.spec.elements import with_ratio_in
@@ -58,7 +59,7 @@ def units(iphs: IPHS) -> Iterator[Row]:
     if not wrong:
         yield Row("units", "", STATEMENT, Verdict.PROVED)
     for fault in wrong:
-        remedy = f"{_remedy(fault, checks)}{_other_kind(fault, model)}"
+        remedy = _remedy(fault, checks) + _other_kind(fault, model) + _other_field(fault, model)
         reason = f"{fault.place.where}: {_finding(fault, model)}; {remedy}"
         yield Row("units", fault.place.element, STATEMENT, Verdict.REFUTED, None, reason)
 
@@ -86,6 +87,21 @@ def _other_kind(fault: Check, model: Model) -> str:
         return ""
     kinds = with_ratio_in(found, model.elements[fault.place.element])
     return "".join(f"; {with_article(kind.name)} takes {unit_text(found)}" for kind in kinds)
+
+
+def _other_field(fault: Check, model: Model) -> str:
+    """Return the hint at the field for a whole law, k*q for stiffness = k, of this unit."""
+    place, found = fault.place, dimension(fault.rule.left, fault.place.words)
+    if not fault.rule.whole or not place.element:
+        return ""
+    element, own = model.elements[place.element], place.where.rpartition(".")[2]
+    marks = {f: mark for f, mark in element.law_fields() if f in element.row.form.one_of}
+    for field, mark in marks.items():
+        alike = own in marks and mark.units == marks[own].units
+        if alike and parse_unit(mark.unit).dimension == found:
+            words, law = field.replace("_", " "), _short(fault.rule.left)
+            return f'; or is it the {words} itself? then {field} = "{law}" instead of {own}'
+    return ""
 
 
 def _unit(term: Expr, place: Place, model: Model) -> str:

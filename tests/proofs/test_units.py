@@ -153,6 +153,14 @@ def test_a_fault_names_place_term_unit_need_and_remedy(edit, expected):
     assert reasons(edit) == expected
 
 
+def test_a_force_in_the_field_of_a_stiffness_is_told_the_field_that_is_meant():
+    found = reasons(('stiffness = "k"', 'stiffness = "k*q"'), ('S = "c_0', 'q = 1.0\nS = "c_0'))
+    assert found == [
+        "elements.spring.stiffness: k*q is N, a stiffness [N/m] is needed; check the unit of k: Pa "
+        'would fit; or is it the force itself? then force = "k*q" instead of stiffness'
+    ]
+
+
 def test_a_wrong_reference_temperature_is_the_one_culprit_everywhere():
     found = reasons(('value = 296.15, unit = "K"', 'value = 296.15, unit = "m"'))
     assert len(found) == 6

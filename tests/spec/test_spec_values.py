@@ -213,6 +213,14 @@ def test_defaults_and_the_start_lie_in_the_domain(condition):
     assert message.endswith("; change a value or the domain")
 
 
+def test_a_force_in_the_field_of_a_stiffness_is_told_where_it_belongs():
+    assert refused_edit(('stiffness = "k"', 'stiffness = "k*q"')) == (
+        "spec: elements.spring: the values given are outside the domain: k = 500000, q = 0; "
+        "expected 'k*q > 0'; change a value or the domain; a law of the force itself is given as "
+        "force, not as stiffness"
+    )
+
+
 @pytest.mark.parametrize("condition", ["1 + lam/1e20 > 1", "exp(1e9*d) > 1", "exp(0 - 1e9*d) > 0"])
 def test_what_rounding_hides_is_in_the_domain(condition):
     edited(('"lam >= 0"', f'"lam >= 0", "{condition}"'))

@@ -13,6 +13,7 @@ from typing import TypeAlias
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.exact_eval import TooCloseError, Value, holds, value_of
 from piezo_sym.expressions.tree import Expr, names
+from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import (
@@ -37,7 +38,9 @@ def check_values(spec: Tables) -> None:
     lanes: dict[str, Values] = {n: (Fraction(entry.si),) for n, entry in spec.inputs.items()}
     lanes |= {name: tuple(map(Fraction, p.lanes)) for name, p in spec.parameters.items()}
     for order in orders(spec):
-        _check_condition(order, lanes, "the knots of a table do not increase", "sort the knots")
+        _check_condition(
+            order, lanes, "the knots of a table do not increase", remedy="sort the knots"
+        )
     lanes |= {symbol: tuple(_starts(spec, symbol, lanes)) for symbol in states(spec)}
     for symbol, body in temperatures(spec).items():
         element = spec.elements[body]
@@ -46,13 +49,25 @@ def check_values(spec: Tables) -> None:
         values = _in_lane(0, names(law), lanes)
         lanes[symbol] = (_value(law, values, f"elements.{body}.{field}"),)
     for condition in (*conditions(spec), *_start_conditions(spec)):
-        _check_condition(condition, lanes)
+        _check_condition(
+            condition, lanes, remedy=f"change a value or the domain{_law(condition, spec)}"
+        )
 
 
 def are_all_margins(spec: Tables) -> bool:
     """Return whether the values of a spec have to satisfy the conditions of its domain alone."""
     ordered = any(names(condition.tree) for condition in orders(spec))
     return not ordered and not any(_start_conditions(spec))
+
+
+def _law(condition: Condition, spec: Tables) -> str:
+    """Return the field for a whole law, if a store's size depends on its own state."""
+    name = condition.where.removeprefix("elements.")
+    if name in spec.elements and spec.elements[name].row.form.role[:1] == ("store",):
+        (size, law, _), element = spec.elements[name].row.form.one_of, spec.elements[name]
+        if state_symbol(element, name) in names(condition.tree):
+            return f"; a law of the {law.replace('_', ' ')} itself is given as {law}, not as {size}"
+    return ""
 
 
 def _start_conditions(spec: Tables) -> Iterator[Condition]:
@@ -117,7 +132,8 @@ def _check_condition(
     condition: Condition,
     lanes: Mapping[str, Values],
     what: str = "the values given are outside the domain",
-    remedy: str = "change a value or the domain",
+    *,
+    remedy: str,
 ) -> None:
     words = names(condition.tree)
     count = _count(words, lanes)

@@ -223,11 +223,14 @@ class Element(Frozen):
 
     def laws(self, name: str) -> Iterator[LawField]:
         """Yield the laws of this element, called `name` in its spec."""
+        for field, mark in self.law_fields():
+            if (text := getattr(self, field)) is not None:
+                yield LawField(name, field, text, mark.of(self))
+
+    def law_fields(self) -> Iterator[tuple[str, Letters]]:
+        """Yield the fields of this kind that are laws, and their marks."""
         for field, info in type(self).model_fields.items():
-            text = getattr(self, field)
-            for mark in info.metadata:
-                if isinstance(mark, Letters) and text is not None:
-                    yield LawField(name, field, text, mark.of(self))
+            yield from ((field, mark) for mark in info.metadata if isinstance(mark, Letters))
 
     def named(self, *to: str) -> Iterator[tuple[str, str]]:
         """Yield (field, name) for names of a 'node', 'input' or 'thermal_mass', as `to` says."""
