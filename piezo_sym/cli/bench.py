@@ -9,7 +9,7 @@ import typer
 from rich.text import Text
 
 from piezo_sym.cli.output import about, console, print_table
-from piezo_sym.cli.words import pairs, signal
+from piezo_sym.cli.words import Units, pairs
 from piezo_sym.files import write_text
 
 Words = list[str] | None
@@ -23,7 +23,7 @@ def bench(
     repeat: Annotated[int, typer.Option(min=1, help="Repetitions of each call.")] = 5,
     duration: Annotated[float, typer.Option(help="Length of a run [s].")] = 0.1,
     inputs: Annotated[
-        Words, typer.Option("--input", "-i", help="NAME=NUMBER or NAME=sine(100,100); SI.")
+        Words, typer.Option("--input", "-i", help="NAME=NUMBER or NAME=sine(100V,50Hz).")
     ] = None,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Report as JSON.")] = None,
 ) -> None:
@@ -41,7 +41,7 @@ def bench(
     with about(spec):
         report = measure(
             load(spec),
-            inputs=dict(pairs(inputs or (), "--input", signal)),
+            inputs=dict(pairs(inputs or (), "--input", Units(spec).signal)),
             duration=positive(duration, "--duration"),
             only=only or (),
             rounds=repeat,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from piezo_sym.cli.output import about, print_table, warnings_as_lines
-from piezo_sym.cli.words import Units, numbers, pairs
+from piezo_sym.cli.words import Units, in_unit, pairs
 from piezo_sym.errors import (
     FileError,
     NetworkError,
@@ -35,10 +35,12 @@ TIMES = "Number of samples; 1001, or ends of steps, if left out."
 EVENTS = "NAME=EXPRESSION, located where its sign changes; repeat."
 STOP = "A comparison, such as 'T_body > 350', that ends the run."
 T0 = "When the run starts [s]; 0, or where it goes on."
+DURATION = "Length of the run [s], or with a unit: 20ms."
+STEP = "A fixed step [s] instead of --rtol."
 OUTPUTS = "Quantities of elements: all, or spring,damper.heat,..."
 CONTINUE = "Go on from the end of this run (.nc or .zarr)."
-INITIAL = "STATE=NUMBER or T_<body>=KELVIN at t = 0; SI; repeat."
-SIGNALS = "NAME=NUMBER, NAME=sine(100,100) or NAME=@FILE.csv; repeat. As --set for units."
+INITIAL = "STATE=NUMBER or T_<body>=KELVIN at t = 0; units as for --set; repeat."
+SIGNALS = "NAME=NUMBER, NAME=sine(100V,50Hz) or NAME=@FILE.csv; units as for --set; repeat."
 SET = "PARAMETER=NUMBER in SI, whatever unit the spec has, or with its unit: L=1.2mH; repeat."
 
 
@@ -47,16 +49,25 @@ def option(about: str, *names: str) -> Any:
     return typer.Option(*names, help=about)
 
 
+def time(about: str, name: str) -> Any:
+    """Return an option that is a time, in s or in its own unit."""
+
+    def read(text: str) -> float:
+        return float(in_unit(text, name, "s", name.strip("-")))
+
+    return typer.Option(name, help=about, metavar="TIME", parser=read)
+
+
 def simulate(
     spec: Annotated[str, typer.Argument(metavar="SPEC", help="Path or shipped name.")],
-    duration: Annotated[float, option("Length of the run [s].")],
+    duration: Annotated[float, time(DURATION, "--duration")],
     inputs: Annotated[list[str] | None, option(SIGNALS, "--input", "-i")] = None,
     parameters: Annotated[list[str] | None, option(SET, "--set", "-p")] = None,
     initial: Annotated[list[str] | None, option(INITIAL, "--initial")] = None,
     continued: Annotated[Path | None, option(CONTINUE, "--continue")] = None,
-    t0: Annotated[float | None, option(T0, "--t0")] = None,
+    t0: Annotated[float | None, time(T0, "--t0")] = None,
     rtol: Annotated[float | None, option("Relative tolerance; 1e-5 if left out.")] = None,
-    step: Annotated[float | None, option("A fixed step [s] instead of --rtol.")] = None,
+    step: Annotated[float | None, time(STEP, "--step")] = None,
     order: Annotated[int | None, option(ORDER)] = None,
     method: Annotated[str | None, option(METHODS)] = None,
     times: Annotated[int | None, option(TIMES)] = None,
@@ -72,11 +83,12 @@ def simulate(
 ) -> None:
     """Simulate a spec's generated module and print its last values.
 
-    Signals: sine(amplitude, frequency, offset=0, phase=0), square(amplitude, frequency, offset=0),
-    triangle(amplitude, frequency, offset=0), chirp(amplitude, f_start, f_stop, duration,
-    offset=0), step(time, before, after), ramp(start, stop, before, after); or @FILE, a table,
-    times in its first column, joined by straight lines, whose header may say units: t [ms],V_in
-    [kV]. Of several columns the one named like the input counts.
+    Signals: sine(amplitude, frequency [Hz], offset=0, phase=0 [rad]), square(amplitude, frequency
+    [Hz], offset=0), triangle(amplitude, frequency [Hz], offset=0), chirp(amplitude, f_start [Hz],
+    f_stop [Hz], duration [s], offset=0), step(time [s], before, after), ramp(start [s], stop [s],
+    before, after), whose other numbers are values of the input; or @FILE, a table, times in its
+    first column, joined by straight lines, whose header may say units: t [ms],V_in [kV]. Of several
+    columns the one named like the input counts.
     """
     _check_ending(out, events)
     units = Units(spec)
@@ -88,7 +100,7 @@ def simulate(
         out,
         inputs=signals,
         parameters=dict(pairs(parameters or (), "--set", units.numbers)),
-        initial=_start(continued, dict(pairs(initial or (), "--initial", numbers))),
+        initial=_start(continued, dict(pairs(initial or (), "--initial", units.initial))),
         events=dict(pairs(events or (), "--event", lambda text, _: text)),
         dissipative_start=dissipative_start,
         **span,

@@ -1,13 +1,14 @@
 """Values of options on the command line: ``NAME=VALUE`` with numbers, signals or files.
 
-Input: what a user typed; for `Units`, also the spec that declares the units of its parameters and
-inputs: ``L=1.2e-3`` is in SI, ``L=1.2mH`` in its own unit.  Output: names and values in SI, or an
-error that names the option.
+Input: what a user typed; for `Units`, also the spec, which knows the units of its parameters,
+inputs and states: ``L=1.2e-3`` is in SI, ``L=1.2mH`` in its own unit.  Output: names and values in
+SI, or an error that names the option.
 """
 
 import re
 from collections.abc import Callable, Iterable
 from functools import cached_property
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any, final
 
@@ -15,10 +16,16 @@ from piezo_sym.cli.output import about
 from piezo_sym.errors import SpecError, UsageError, listing, nearest, quote
 from piezo_sym.files import path_text
 
-CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)\)")
+CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)(?P<end>\)?)")
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 #: A number and its unit; the e of 1e3 is no unit.
 IN_UNIT = re.compile(rf"\s*({NUMBER})\s*(?![eE][-+]?\d)([^\W\d_].*)")
+#: The units of the numbers of signals; all others have that of the input.
+UNITS = {
+    **dict.fromkeys(("frequency", "f_start", "f_stop"), "Hz"),
+    **dict.fromkeys(("time", "start", "stop", "duration"), "s"),
+    "phase": "rad",
+}
 
 
 def pairs(
@@ -37,42 +44,69 @@ def pairs(
         yield name, read(value.strip(), f"{option} {name}")
 
 
-def signal(text: str, where: str) -> Any:
+def signal(text: str, where: str, read: Callable[[str, str, str], float] | None = None) -> Any:
     """Return a number, a signal such as ``sine(100, 100, offset=50)``, or samples, ``@drive.csv``.
 
-    Nothing is evaluated.
+    Nothing is evaluated. `read` converts a value of the input, (text, place, name of the number),
+    to SI.
     """
+
+    def value(part: str, name: str = "") -> float:
+        if read is None or name in UNITS:
+            return in_unit(part, where, UNITS.get(name, ""), name)
+        return read(part, where, name)
+
     if text.startswith("@"):
         return samples(text[1:], where)
-    call = CALL.fullmatch(text)
-    if call is None:
-        return number(text, where)
     from piezo_sym.run.signals import SIGNALS
 
-    if call["name"] not in SIGNALS:
-        what = f"{quote(call['name'])} is no signal"
-        raise UsageError(what, where, remedy=nearest(call["name"], SIGNALS))
-    words = [part.rpartition("=") for part in call["numbers"].split(",")]
-    given = [number(value, where) for _, equals, value in words if not equals]
-    named = {word.strip(): number(value, where) for word, equals, value in words if equals}
+    if text in SIGNALS:
+        raise UsageError(f"{quote(text)} has no numbers", where, spelled(text))
+    call = CALL.fullmatch(text)
+    if call is None:
+        return value(text)
+    name = call["name"]
+    if name not in SIGNALS:
+        raise UsageError(f"{quote(name)} is no signal", where, remedy=nearest(name, SIGNALS))
+    if not call["end"]:
+        raise UsageError(f"{quote(text)} has no ')' at its end", where, spelled(name))
+    given, named = _arguments(name, call["numbers"], value)
     try:
-        return SIGNALS[call["name"]](*given, **named)
+        return SIGNALS[name](*given, **named)
     except TypeError as error:
-        what = f"{call['name']} does not take {quote(call['numbers'])}"
-        raise UsageError(what, where, spelled(call["name"])) from error
+        what = f"{name} does not take {quote(call['numbers'])}"
+        raise UsageError(what, where, spelled(name)) from error
     except UsageError as error:
-        error.where = f"{where}: {error.where}"
+        error.put_in(where)
         raise
 
 
-def spelled(name: str) -> str:
-    """Return a signal as it is written: sine(amplitude, frequency, offset=0, phase=0)."""
-    from inspect import signature
+def _arguments(
+    name: str, text: str, read: Callable[[str, str], float]
+) -> tuple[list[float], dict[str, float]]:
+    """Return the numbers of a signal, by place and by name; `read` converts (text, name) to SI."""
+    words = [part.rpartition("=") for part in text.split(",")]
+    plain = [value for _, equals, value in words if not equals]
+    named = {word.strip(): value for word, equals, value in words if equals}
+    places = [*_places(name), *[""] * len(plain)]  # more than it takes are refused later
+    given = [read(value, place) for value, place in zip(plain, places, strict=False)]
+    return given, {place: read(value, place) for place, value in named.items()}
 
+
+def _places(name: str) -> dict[str, Any]:
+    """Return the names of a signal's numbers, and their defaults."""
     from piezo_sym.run.signals import SIGNALS
 
-    taken = signature(SIGNALS[name]).parameters.values()
-    words = (p.name if p.default is p.empty else f"{p.name}={p.default:g}" for p in taken)
+    return {p.name: p.default for p in signature(SIGNALS[name]).parameters.values()}
+
+
+def spelled(name: str) -> str:
+    """Return a signal as it is written: square(amplitude, frequency [Hz], offset=0)."""
+    words = (
+        (word if default is Parameter.empty else f"{word}={default:g}")
+        + (f" [{UNITS[word]}]" if word in UNITS else "")
+        for word, default in _places(name).items()
+    )
     return f"{name}({', '.join(words)})"
 
 
@@ -110,9 +144,29 @@ def numbers(
     return values[0] if len(values) == 1 else values
 
 
+def in_unit(text: str, where: str, needed: str, name: str = "") -> float:
+    """Return a number in SI: a plain one, or one with a unit like `needed`; with any if it is "".
+
+    `name` is what the number is of, in a message.
+    """
+    from piezo_sym.expressions.units import parse_unit, to_si
+
+    match = IN_UNIT.fullmatch(text)
+    if match is None:
+        return number(text, where)
+    value, given = number(match[1], where), match[2].strip()
+    unit = parse_unit(given, where, value)
+    other = parse_unit(needed or given).dimension != unit.dimension
+    if other or (needed == "Hz" and not given.endswith("Hz")):  # rpm is in rad/s
+        expected = "a plain number" if needed == "1" else f"one such as {needed}"
+        of = f" of {quote(name)}" if name else ""
+        raise UsageError(f"{quote(given)} is no unit{of}", where, expected)
+    return to_si(value, unit)
+
+
 @final
 class Units:
-    """The units of a spec's parameters and inputs.
+    """The units of a spec's parameters, inputs and states.
 
     Attributes
     ----------
@@ -125,18 +179,49 @@ class Units:
 
     def numbers(self, text: str, where: str) -> float | list[float]:
         """Return a number, or a list of them for the lanes of a bank, each in its unit or SI."""
-        if any(map(IN_UNIT.fullmatch, text.split(","))):
-            return numbers(text, where, self._converted)
-        self._assume(where)
-        return numbers(text, where)
+        return self._numbers(text, where, lambda name: self._declared.get(name, ""))
+
+    def initial(self, text: str, where: str) -> float | list[float]:
+        """Return the start of a state, or a list for the lanes of a bank, in their unit or SI."""
+        return self._numbers(text, where, lambda name: self._states.get(name, ""))
+
+    def _numbers(self, text: str, where: str, unit_of: Callable[[str], str]) -> float | list[float]:
+        if not any(map(IN_UNIT.fullmatch, text.split(","))):
+            self._assume(where)
+            return numbers(text, where)
+        name = where.rpartition(" ")[2]
+        unit = "1" if name.endswith("_count") else unit_of(name)
+
+        def read(part: str, where: str) -> float:
+            if not IN_UNIT.fullmatch(part):
+                expected = "a unit for each number, or none"
+                raise UsageError(f"{quote(part)} has no unit", where, expected)
+            return in_unit(part, where, unit, name)
+
+        return numbers(text, where, read)
 
     def signal(self, text: str, where: str) -> Any:
-        """Return a signal, or a number in its unit or SI."""
-        if IN_UNIT.fullmatch(text):
-            return self._converted(text, where)
-        if not text.startswith("@"):
+        """Return a signal, or a number, in its unit or SI."""
+        return signal(text, where, self._value)
+
+    def _value(self, text: str, where: str, place: str) -> float:
+        if not IN_UNIT.fullmatch(text):
             self._assume(where)
-        return signal(text, where)
+        name = where.rpartition(" ")[2]
+        return in_unit(text, where, self._declared.get(name, ""), place or name)
+
+    @cached_property
+    def _states(self) -> dict[str, str]:
+        """The SI unit of each state, and of ``T_<body>``."""
+        from piezo_sym.spec.load import load
+        from piezo_sym.spec.places import state_dimensions
+        from piezo_sym.spec.tables import bodies
+        from piezo_sym.spec.unit_text import unit_text
+
+        with about(self._spec):
+            spec = load(self._spec).flatten()
+        hot = {f"T_{body}": "K" for body in bodies(spec)}
+        return hot | {name: unit_text(d) for name, d in state_dimensions(spec).items()}
 
     @cached_property
     def _declared(self) -> dict[str, str]:
@@ -154,20 +239,6 @@ class Units:
         units = {k: v.get("unit") for k, v in entries.items() if isinstance(v, dict)}
         return {name: unit for name, unit in units.items() if isinstance(unit, str)}
 
-    def _converted(self, text: str, where: str) -> float:
-        from piezo_sym.expressions.units import parse_unit, to_si
-
-        match = IN_UNIT.fullmatch(text)
-        if match is None:
-            raise UsageError(f"{quote(text)} has no unit", where, "a unit for each number, or none")
-        value, (name, unit_part) = number(match[1], where), (where.rpartition(" ")[2], match[2])
-        declared = self._declared.get(name, "1" if name.endswith("_count") else unit_part)
-        unit = parse_unit(unit_part.strip(), where, value)
-        if parse_unit(declared.strip()).dimension != unit.dimension:
-            expected = "a plain number" if declared == "1" else f"one such as {declared}"
-            raise UsageError(f"{quote(unit_part)} is no unit of {quote(name)}", where, expected)
-        return to_si(value, unit)
-
     def _assume(self, where: str) -> None:
         from piezo_sym.expressions.units import parse_unit
 
@@ -177,4 +248,5 @@ class Units:
         unit = parse_unit(declared, f"unit of {quote(name)}")
         if unit.factor != 1:
             line = f"{name}: read in {unit.si}, though the spec has {declared}"
-            self.assumed.append(f"{line}; a number may say its unit: {name}=1.2{declared}")
+            line += f"; a number may say its unit: {name}=1.2{declared}"
+            self.assumed += [line] * (line not in self.assumed)

@@ -89,7 +89,7 @@ def _prefixes(count: int, match: re.Match[str]) -> int:
 def _check_number(token: str, following: str) -> None:
     if following.isalnum() or following == "_":
         what = f"has a number that runs into {quote(following)}"
-        raise RefusedError(what, "a plain decimal number, such as 0.5 or 1e-3")
+        raise RefusedError(what, "a plain decimal number without unit, such as 0.5 or 1e-3")
     mantissa, _, exponent = token.lower().partition("e")
     digits = sum(c.isdigit() for c in mantissa)
     if digits > MAX_DIGITS or abs(int(exponent[:9] or "0")) > MAX_MAGNITUDE:

@@ -54,8 +54,8 @@ def test_a_name_that_is_nearly_one():
 
 
 def test_a_length_with_a_unit(capsys):
-    assert run(["simulate", "oscillator", "--duration", "0.1s"]) == 2
-    assert "a valid number, such as 0.1" in capsys.readouterr().err
+    assert run(["simulate", "oscillator", "--duration", "0.1m"]) == 2
+    assert "'m' is no unit of 'duration'; expected one such as s" in capsys.readouterr().err
 
 
 def test_a_stepper_says_what_it_is():

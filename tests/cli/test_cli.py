@@ -39,7 +39,7 @@ WRONG = [
     (("show",), "Missing argument 'SPEC'; see `piezo-sym show --help`"),
     (("verify", "piezo_stack", "--jsom"), "No such option: --jsom"),
     (("simulate", "piezo_stack"), "Missing option '--duration'"),
-    (("simulate", "piezo_stack", "--duration", "long"), "Invalid value for '--duration'"),
+    (("simulate", "piezo_stack", "--duration", "long"), "--duration: 'long' is no number"),
     (("verify", "piezo_stak"), "no shipped spec is called 'piezo_stak'; did you mean"),
     (("verify", "/no/such.toml"), "'/no/such.toml': cannot be read (No such file or directory)"),
     (("show", "/no/such.toml"), "'/no/such.toml': cannot be read"),

@@ -183,6 +183,18 @@ def test_numbers_are_in_si_or_in_a_unit_of_their_own(call, spec_file):
     assert "though" not in call(*words, "--set", "C=5uF").out
 
 
+def test_times_starts_and_numbers_of_signals_may_have_units(call, spec_file):
+    spec = spec_file('V_in  = { unit = "V"', 'V_in = { unit = "kV"')
+    words = ("simulate", spec, "--times", "3")
+    start, drive = ("--initial", "q=1e-6"), "V_in=sine(100, 50, phase=0.5, offset=20)"
+    plain = call(*words, "--duration", "1e-4", "--step", "1e-5", *start, "-i", drive)
+    *table, line = plain.out.splitlines()
+    assert line.startswith("V_in: read in V, though the spec has kV; ")
+    start = ("--initial", "q=1um", "-i", "V_in=sine(0.1kV, 0.05kHz, phase=0.5rad, offset=20 V)")
+    said = call(*words, "--duration", "100us", "--step", "10 us", *start)
+    assert (said.code, said.out.splitlines()) == (0, table)
+
+
 REFUSED = [
     (("-p", "L=1.2mF"), "--set L: 'mF' is no unit of 'L'; expected one such as H"),
     (("-p", "L=1e-3,2mH"), "--set L: '1e-3' has no unit; expected a unit for each number, or none"),
@@ -190,7 +202,18 @@ REFUSED = [
     (("-p", "T_0=20degC"), "--set T_0: unit 'degC' has an offset"),
     (("-p", "hysteron_count=2m"), "--set hysteron_count: 'm' is no unit of 'hysteron_count'; exp"),
     (("-p", "zz=2mH"), "simulate.parameters: unknown name 'zz'; known: M, k"),
-    (("--initial", "q=1mm"), "--initial q: '1mm' is no number; expected such as 0.5 or 1e-3"),
+    (("--initial", "q=1mV"), "--initial q: 'mV' is no unit of 'q'; expected one such as m"),
+    (("--initial", "T_body=20degC"), "--initial T_body: unit 'degC' has an offset; expected"),
+    (("--step", "10uV"), "--step: 'uV' is no unit of 'step'; expected one such as s"),
+    (("--t0", "soon"), "--t0: 'soon' is no number; expected such as 0.5 or 1e-3, in SI"),
+    (("-i", "V_in=sine(2N,5)"), "--input V_in: 'N' is no unit of 'amplitude'; expected one such"),
+    (("-i", "V_in=sine(2,5rpm)"), "--input V_in: 'rpm' is no unit of 'frequency'; expected one"),
+    (("-i", "V_in=1kN"), "--input V_in: 'kN' is no unit of 'V_in'; expected one such as V"),
+    (("-i", "V_in=ramp"), "--input V_in: 'ramp' has no numbers; expected ramp(start [s], stop [s]"),
+    (
+        ("--stop", "q < 5mm"),
+        "simulate.stop: 'q < 5mm' has a number that runs into 'm'; expected a ",
+    ),
     (("-i", "V_in"), "--input: 'V_in' has no '='; expected NAME=VALUE"),
     (("-i", "V_in=high"), "--input V_in: 'high' is no number; expected such as 0.5 or 1e-3"),
     (("-i", "V_in="), "--input V_in: '' is no number"),
@@ -206,7 +229,7 @@ REFUSED = [
     (("-i", "V_in=sine(1,2,offset=x)"), "--input V_in: 'x' is no number"),
     (("-i", "V_in=sine(1,x)"), "--input V_in: 'x' is no number"),
     (("-i", "V_in=sine(1,-2)"), "--input V_in: sine.frequency: '-2.0' is not positive"),
-    (("-i", "V_in=sine(1,2"), "--input V_in: 'sine(1,2' is no number"),
+    (("-i", "V_in=sine(1,2"), "--input V_in: 'sine(1,2' has no ')' at its end; expected sine("),
     (("-i", "V_in=nan"), "simulate.inputs.V_in: 'nan' is not a finite number"),
     (("-i", "Vin=1"), "simulate.inputs: unknown name 'Vin'; did you mean 'V_in'?"),
     (("-i", "T_e=290"), "model 'piezo_stack': start is outside the domain at t = 0 s"),
