@@ -222,7 +222,7 @@ def columns(result: xarray.Dataset) -> Any:
     """Return a result as a table: one column per quantity, for a bank one per lane."""
     import pandas as pd
 
-    from piezo_sym.run.samples import header_of
+    from piezo_sym.run.sample_files import header_of
 
     series = {header_of("time", "s"): result.time.to_series()}
     for name, variable in result.data_vars.items():

@@ -6,7 +6,8 @@ the ledger of energy and entropy over time.  Neither SymPy nor a spec is needed 
 
 from piezo_sym.run import signals
 from piezo_sym.run.module import GeneratedModule
-from piezo_sym.run.samples import samples, samples_from_csv
+from piezo_sym.run.sample_files import samples_from_csv
+from piezo_sym.run.samples import samples
 from piezo_sym.run.signals import *  # noqa: F403
 from piezo_sym.run.signals import Signal
 from piezo_sym.run.simulate import simulate

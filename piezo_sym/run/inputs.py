@@ -151,7 +151,9 @@ def read_signal(value: object, where: str, span: tuple[float, float], unit: str)
             raise UsageError(what, where, f"samples in {unit}")
     if isinstance(signal, Samples) and not signal.covers(*span):
         what = f"samples span {signal.times[0]:g} s to {signal.times[-1]:g} s"
-        raise UsageError(what, where, f"samples that cover {span[0]:g} s to {span[1]:g} s")
+        expected = f"samples that cover {span[0]:g} s to {span[1]:g} s"
+        remedy = "no value is held before the first or after the last: add samples at both ends"
+        raise UsageError(what, where, expected, f"{remedy}, or run within them (duration, t0)")
     return signal
 
 

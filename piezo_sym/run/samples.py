@@ -1,42 +1,25 @@
-"""Signals from samples: straight lines between (t, values), from arrays or a text file.
+"""Signals from samples: straight lines between (t, values).
 
-Input: times [s] and values, or a delimited text file whose header may name units, ``t [ms]``.
-Output: a frozen `Samples`, in SI.
+Input: times [s] and values.  Output: a frozen `Samples`, in SI; `sample_files` makes them of files.
 """
 
-import csv
-import re
-import warnings
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
-from math import inf, isfinite
-from os import PathLike
-from pathlib import Path
-from typing import Any, final
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import inf
+from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from piezo_sym.errors import FileError, PiezoError, UsageError, listing, nearest, quote
-from piezo_sym.files import near_file
+from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, increasing, vector
 from piezo_sym.run.signals import MOST_CORNERS, Signal
 
-DELIMITERS = ",;\t"
-#: The unit of temperature with an offset in headers, and its zero [K].
-CELSIUS, ZERO_CELSIUS = ("degC", "\N{DEGREE SIGN}C"), 273.15
-HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its unit, t [ms]
-OTHERWISE = re.compile(  # t (ms), t/ms
-    r"(?P<name>.*?)\s*(?:\((?P<unit>[^()]+)\)|/\s*(?P<over>[^/()]+))"
-)
-#: Endings of names that are meant as units.
-TIMES, VALUES = ("ns", "us", "ms", "min"), ("mV", "kV", "uA", "mA", "um", "mm", "mN", "kN", "degC")
 SLACK = 1e-9  # of the duration: by rounding, samples may span less
 
 
 @final
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Samples(Signal):
     """Straight lines between samples; see `samples`.
 
@@ -50,6 +33,14 @@ class Samples(Signal):
     unit: str = ""
     assumed: str = ""
     source: str = ""
+
+    def __repr__(self) -> str:
+        """Return how many samples there are, over which times and values."""
+        t, x = self.times, self.values
+        span = f"{t.size} from {t[0]:g} s to {t[-1]:g} s"
+        return (
+            f"<Samples: {span}, values {x.min():g} to {x.max():g}{self.unit and f' {self.unit}'}>"
+        )
 
     def _values(self, t: FloatArray | float) -> FloatArray:
         return np.asarray(np.interp(t, self.times, self.values))
@@ -100,6 +91,10 @@ def read_samples(times: object, values: object, where: str) -> Samples:
     if t[:2].size == 2 and t[0] == t[1]:
         what = f"the first time, {t[0]:g} s, stands twice"
         raise UsageError(what, f"{where}.times", "a value before a jump", "leave out the first row")
+    for n in np.flatnonzero(t[2:] == t[:-2])[:1] + 2:
+        what = f"time {t[n]:g} at entry {n} follows {t[n]:g} twice"
+        expected = "strictly increasing times, or one twice for a jump between two values"
+        raise UsageError(what, f"{where}.times", expected)
     t[twice] = np.nextafter(t[twice], -inf)  # a jump: from the number before this time
     t = increasing(t, f"{where}.times")
     x = vector(values, f"{where}.values")
@@ -107,193 +102,3 @@ def read_samples(times: object, values: object, where: str) -> Samples:
         what = f"{t.size} times and {x.size} values"
         raise UsageError(what, where, "as many values as times, two at least")
     return Samples(t, x)
-
-
-def samples_from_csv(
-    path: str | PathLike[str], column: str | None = None, time_column: str | None = None
-) -> Samples:
-    """Return the samples in a delimited text file (comma, semicolon or tab) with a header.
-
-    A header such as ``t [ms],V_in [V]``, ``t (ms)`` or ``t/ms`` gives the units: times and values
-    are converted to SI, and a run refuses values whose dimension is not that of its input. Without
-    units, times are in s, and values in the SI unit of the input.
-
-    Parameters
-    ----------
-    path : the file, UTF-8.
-    column : header of the values, with or without its unit; may be left out when the file has two
-        columns.
-    time_column : header of the times; the first column when left out.
-
-    Raises
-    ------
-    FileError : the file cannot be read, or a cell is not a finite number.
-    UsageError : no column has that header, a unit is unknown or no unit of time, or the times do
-        not increase.
-    """
-    headers = column_headers(path)
-    t = 0 if time_column is None else _index_of(headers, time_column, f"{path}.time_column")
-    x = _other_column(headers, t, path) if column is None else _index_of(headers, column, str(path))
-    times, values = _columns(Path(path), t, x)
-    seconds, _ = _factor(headers[t], f"{path}, header", "s")
-    factor, unit = _factor(headers[x], f"{path}, header")
-    values = values * factor + (ZERO_CELSIUS if headers[x][1] in CELSIUS else 0.0)
-    for n, ends in ((t, TIMES), (x, VALUES)):
-        _refuse_suffix(*headers[n], ends, f"{path}, header")
-    defaults = (t, "s"), (x, "the input's SI unit")
-    assumed = [f"{headers[n][0]} in {default}" for n, default in defaults if not headers[n][1]]
-    signal = read_samples(times * seconds, values, str(path))
-    source = f"{path}, column {quote(headers[x][0])}"
-    return replace(signal, unit=unit, assumed=" and ".join(assumed), source=source)
-
-
-def header_of(name: object, unit: str) -> str:
-    """Return the header of a column as `samples_from_csv` reads it; unit "1" is left out."""
-    return f"{name}" if unit == "1" else f"{name} [{unit}]"
-
-
-def column_headers(path: str | PathLike[str]) -> list[tuple[str, str]]:
-    """Return the names and units in the header of a delimited text file; "" for no unit."""
-    with _open(Path(path)) as (header, _, _):
-        return header
-
-
-@contextmanager
-def _open(path: Path) -> Iterator[tuple[list[tuple[str, str]], str, Iterator[list[str]]]]:
-    """Yield header, delimiter and rows of a delimited text file; raise `FileError` otherwise."""
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            first = file.readline()
-            if not first:
-                raise FileError("is empty", str(path), "a header line, then numbers")
-            delimiter = max(DELIMITERS, key=first.count)
-            (names,) = csv.reader([first], delimiter=delimiter, skipinitialspace=True)
-            if all(_is_number(name) for name in names):
-                what = "line 1 has numbers where names are expected"
-                raise FileError(what, str(path), "a header line, such as t [s],V_in [V]")
-            header = [_name_and_unit(name.strip()) for name in names]
-            rows = csv.reader(file, delimiter=delimiter, skipinitialspace=True)
-            yield header, delimiter, rows
-    except OSError as cause:
-        what = f"cannot be read: {cause.strerror}"
-        raise FileError(what, str(path), remedy=near_file(path)) from cause
-    except UnicodeDecodeError as cause:
-        raise FileError("is not text in UTF-8", str(path), remedy="save it as UTF-8") from cause
-
-
-def _name_and_unit(text: str) -> tuple[str, str]:
-    """Return the name and the unit in a header: t [ms]; t (ms) or t/ms, where ms is a unit."""
-    if match := HEADER.fullmatch(text):
-        return match["name"], match["unit"].strip()
-    if match := OTHERWISE.fullmatch(text):
-        unit = (match["unit"] or match["over"]).strip()
-        if _is_unit(unit):
-            return match["name"], unit
-    return text, ""
-
-
-def _is_unit(text: str) -> bool:
-    """Return whether a text is meant as a unit; also degC and non-ASCII units, refused later."""
-    from piezo_sym.expressions.units import parse_unit
-
-    try:
-        parse_unit(text)
-    except PiezoError as error:
-        return not text.isascii() or "offset" in error.what
-    return True
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
-    """Return two columns as numbers; raise `FileError` at the first cell that is not a number."""
-    import pandas
-
-    with _open(path) as (header, delimiter, rows), warnings.catch_warnings():
-        warnings.simplefilter("error")
-        with suppress(ValueError, Warning):  # the loop below finds the place of the error
-            with path.open(encoding="utf-8-sig") as lines:  # pandas drops cells without header
-                if any(line.count(delimiter) >= len(header) for line in lines):
-                    raise ValueError("cells without header")
-            how: Any = {"index_col": False, "dtype": float, "na_filter": False, "usecols": [t, x]}
-            how |= {"sep": delimiter, "skipinitialspace": True, "encoding": "utf-8-sig"}
-            table = pandas.read_csv(path, **how)
-            both = table.to_numpy()[:, [0, 1] if t < x else [1, 0]]
-            if np.isfinite(both).all():
-                return both[:, 0], both[:, 1]
-        numbered = ((line, row) for line, row in enumerate(rows, start=2) if row)
-        cells = (_cell(row, n, path, line, len(header)) for line, row in numbered for n in (t, x))
-        both = np.fromiter(cells, dtype=float).reshape(-1, 2)
-        return both[:, 0], both[:, 1]
-
-
-def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[float, str]:
-    """Return the factor of a column's unit to SI, and its SI unit; `expected` is a like unit."""
-    from piezo_sym.expressions.units import parse_unit
-
-    name, text = header
-    if not text:
-        return 1.0, ""
-    if text in CELSIUS and not expected:
-        return 1.0, "K"
-    try:
-        unit = parse_unit(text, where)
-    except PiezoError as error:
-        raise UsageError(error.what, where, error.expected, error.remedy) from error
-    if expected and unit.dimension != parse_unit(expected).dimension:
-        what = f"{quote(name)} is in {text}"
-        raise UsageError(what, where, f"a time, such as in {expected}")
-    return float(unit.factor), unit.si
-
-
-def _refuse_suffix(name: str, unit: str, ends: Collection[str], where: str) -> None:
-    """Raise `UsageError` for a header without unit whose name ends in one: t_ms, t in ms."""
-    start, _, end = re.sub(r"( in)?\s+", "_", name).rpartition("_")
-    if start and not unit and end in ends:
-        what = f"{quote(name)} is a name without a unit that ends in one"
-        raise UsageError(what, where, remedy=f"write {quote(f'{start} [{end}]')}, or another name")
-
-
-def _index_of(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> int:
-    name, wanted_unit = _name_and_unit(wanted.strip())
-    names = [f"{name} [{unit}]" if wanted_unit and unit else name for name, unit in headers]
-    wanted = f"{name} [{wanted_unit}]" if wanted_unit else wanted
-    if wanted not in names:
-        raise UsageError(f"no column {quote(wanted)}", where, remedy=nearest(str(wanted), names))
-    if names.count(wanted) > 1:
-        raise UsageError(f"two columns are named {quote(wanted)}", where, "distinct headers")
-    return names.index(wanted)
-
-
-def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> int:
-    others = [n for n in range(len(headers)) if n != t]
-    if len(others) != 1:
-        named = listing([headers[n][0] for n in others])
-        what = f"{len(others)} columns beside the times: {named}"
-        remedy = "name one like the input, or, in Python, say column=..."
-        raise UsageError(what, str(path), "one", remedy)
-    return others[0]
-
-
-def _cell(row: Sequence[str], n: int, path: Path, line: int, columns: int) -> float:
-    """Return cell n of a row as a number; raise `FileError` otherwise."""
-    text = row[n].strip() if n < len(row) else ""
-    where = f"{path}, line {line}"
-    if any(cell.strip() for cell in row[columns:]):
-        remedy = "write decimals with a point, and a name for each column into the header"
-        raise FileError(f"has {len(row)} cells", where, f"{columns}", remedy)
-    try:
-        value = float(text.replace("_", "x"))  # 1_0 is a number in Python alone
-    except ValueError as cause:
-        what = f"{quote(text)} is not a number"
-        remedy = "units go into the header: t [ms]" if line == 2 and text[:1].isalpha() else ""
-        raise FileError(what, where, "a number like 1.5e-3", remedy) from cause
-    if not isfinite(value):
-        raise FileError(f"{quote(text)} is not finite", where, "a finite number")
-    return value

@@ -38,7 +38,19 @@ def test_columns_by_name(write):
     [
         ("", {}, FileError, "is empty; expected a header"),
         (b"t,V\n0,\xff\n", {}, FileError, "is not text in UTF-8"),
-        ("t,V\n0,1\n1,x\n", {}, FileError, "line 3: 'x' is not a number"),
+        ("t,V\n0,1\n1,x\n", {}, FileError, "line 3: 'x' is not a number (column 'V')"),
+        ("t;V\n0;1\n1;2,5\n", {}, FileError, "'2,5' is not a number (column 'V'); expected a num"),
+        ("t;V\n0;1\n1;2,5\n", {}, FileError, "; write decimals with a point"),
+        ("t,V\n0,1\n# x,2\n", {}, FileError, "delete lines that begin with '#'"),
+        ("# t,V\n0,1\n1,2\n", {}, FileError, "line 1 begins with '#'; expected a header line"),
+        ("\nt,V\n0,1\n1,2\n", {}, FileError, "line 1 is empty; expected a header line"),
+        ("t V\n0 1\n1 2\n", {}, FileError, "separate times and values by a comma, semicolon"),
+        (
+            "t,V\n0,1\n1,1\n1,2\n1,3\n2,3\n",
+            {},
+            UsageError,
+            "at entry 3 follows 1 twice; expected strictly",
+        ),
         ("t,V\n0,1\n\n1\n", {}, FileError, "line 4: '' is not a number"),
         ("t,V\n0,1\n1,1_0\n", {}, FileError, "line 3: '1_0' is not a number"),
         (
@@ -48,7 +60,7 @@ def test_columns_by_name(write):
             "line 3: has 3 cells; expected 2; write decimals",
         ),
         ("t,V,W\n0,1,2\n1,2,3,x\n", {"column": "V"}, FileError, "line 3: has 4 cells; expected 3"),
-        ("t,V\n0,1\n1,nan\n", {}, FileError, "line 3: 'nan' is not finite"),
+        ("t,V\n0,1\n1,nan\n", {}, FileError, "line 3: 'nan' is not finite (column 'V')"),
         ("t,V\n0,1\n", {"column": "W"}, UsageError, "no column 'W'; known: t, V"),
         ("t,Volt\n0,1\n", {"column": "volt"}, UsageError, "did you mean 'Volt'?"),
         ("t,V\n0,1\n", {"time_column": "s"}, UsageError, "time_column: no column 's'"),
@@ -71,6 +83,11 @@ def test_faults(write, text, more, kind, words):
         samples_from_csv(path, **more)
     assert words in str(error.value)
     assert "drive.csv" in str(error.value)
+
+
+def test_samples_are_shown_by_their_span(write):
+    signal = samples_from_csv(write("t,V [kV]\n0,1\n1,3\n"))
+    assert repr(signal) == "<Samples: 2 from 0 s to 1 s, values 1000 to 3000 V>"
 
 
 def test_missing_file(tmp_path):

@@ -23,11 +23,12 @@ REFUSED = [
     ({"inputs": {"V_in": int}}, "is no input"),
     ({"inputs": {"V_in": [1, 2, 3]}}, "simulate.inputs.V_in: '[1, 2, 3]' is no input"),
     ({"inputs": {"V_in": ([0, 1], [1, nan])}}, "simulate.inputs.V_in.values[1]: 'nan'"),
-    ({"inputs": {"V_in": ([0, 1, 1, 1], [1, 2, 3, 4])}}, "at entry 2 follows 1"),
+    ({"inputs": {"V_in": ([0, 1, 1, 1], [1, 2, 3, 4])}}, "at entry 3 follows 1 twice"),
     ({"inputs": {"V_in": ([0, 1], [1, 2, 3])}}, "simulate.inputs.V_in: 2 times and 3 values"),
     (
         {"inputs": {"V_in": ([0, 0.05], [1, 2])}},
-        "inputs.V_in: samples span 0 s to 0.05 s; expected samples that cover 0 s to 0.1 s",
+        "inputs.V_in: samples span 0 s to 0.05 s; expected samples that cover 0 s to 0.1 s"
+        "; no value is held before the first or after the last: add samples at both ends",
     ),
     ({"inputs": {"V_in": samples([0.01, 1], [1, 2])}}, "samples span 0.01 s to 1 s"),
     ({"inputs": {"V_in": lambda _: nan}}, "simulate.inputs.V_in(0): 'nan' is not a finite"),

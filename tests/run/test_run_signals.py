@@ -187,7 +187,10 @@ def test_breaks_that_round_to_one_another_are_one():
         (lambda: chirp(1, 0, 2, 1), "chirp.f_start: '0' is not positive"),
         (lambda: samples([0, 1], [1]), "samples: 2 times and 1 values; expected as many"),
         (lambda: samples([0], [1]), "samples: 1 times and 1 values"),
-        (lambda: samples([0, 1, 1, 1], [1, 2, 3, 4]), "at entry 2 follows 1; expected strictly"),
+        (
+            lambda: samples([0, 1, 1, 1], [1, 2, 3, 4]),
+            "at entry 3 follows 1 twice; expected strictly",
+        ),
         (lambda: samples([0, nan], [1, 2]), "samples.times[1]: 'nan'"),
         (lambda: samples(np.array([0, inf]), [1, 2]), "samples.times: entry 1 is inf"),
         (lambda: samples([0, 1], [True, 2]), "samples.values[0]: 'True'"),
