@@ -46,7 +46,8 @@ PREFIXES = {"p": -12, "n": -9, "u": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9
 #: The units of specs, by pint's long names; each may have an SI prefix.
 _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
     farad ohm siemens weber tesla henry radian degree turn revolutions_per_minute minute hour day
-    liter bar metric_ton inch foot pound electron_volt degree_Celsius degree_Fahrenheit decibel
+    liter bar standard_atmosphere pound_force_per_square_inch metric_ton inch foot pound force_pound
+    force_kilogram electron_volt degree_Celsius degree_Fahrenheit decibel
     neper count percent"""
 UNITS = frozenset(_UNITS.split())
 #: Pint's names for the dimensions of the base units.
@@ -130,12 +131,9 @@ def _read(text: str, where: str, value: float | None) -> Unit:
 def _spelled(terms: Terms) -> str:
     text = ""
     for name, power in terms:
-        if re.search("[*/]", name):  # a product of base units
-            part, sign = name if power == 1 else raised(f"({name})", power), "*"
-        else:
-            over = bool(text) and power < 0
-            part, sign = raised(name, -power if over else power), "/" if over else "*"
-        text += f"{sign}{part}" if text else part
+        over, product = bool(text) and power < 0, re.search("[*/]", name) and power != 1
+        part = raised(f"({name})" if product else name, -power if over else power)
+        text += f"{'/' if over else '*'}{part}" if text else part
     return text
 
 
@@ -184,7 +182,8 @@ def _raised(factor: Fraction, power: Fraction, text: str, where: str) -> Fractio
     root = Fraction(*(int(fmpz(n).root(order)) for n in (size.numerator, size.denominator)))
     if root**order != size:
         what = f"unit {quote(text)} has a root of {factor}, which is no exact number"
-        raise SpecError(what, where, "a root of coherent SI units", "give the value in those")
+        remedy = f"give the value in SI, times {float(factor) ** float(power):.12g}"
+        raise SpecError(what, where, "a root of coherent SI units, such as Pa**(1/2)", remedy)
     return root
 
 
@@ -246,7 +245,7 @@ def _meant(name: str, text: str) -> str:
 
 
 def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:
-    """Return the coherent unit of a named one: itself, itself without prefix, or base units."""
+    """Return the coherent unit of a named one: itself, without prefix, a common or base units."""
     if factor == 1:
         return name
     registry = _registry()
@@ -254,7 +253,8 @@ def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:
     if root and registry.get_base_units(root)[0] == 1:
         symbol = str(registry.get_symbol(root))
         return symbol if symbol.isascii() else root
-    return base_units(dimension)
+    alike = (name for name in COMMON if name != "Hz" and _known(name).dimension == dimension)
+    return next(alike, base_units(dimension))
 
 
 def to_si(value: float, unit: Unit) -> float:

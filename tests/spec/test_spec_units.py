@@ -217,6 +217,24 @@ def test_words_that_are_no_units(text, answer):
 def test_a_root_of_a_factor_that_is_no_exact_number_is_refused():
     error = refusal(parse_unit, "N/(mm/s)**(1/2)", "parameters.d.unit")
     assert "root of 1/1000" in error.what
+    assert error.remedy == "give the value in SI, times 31.6227766017"
+
+
+@pytest.mark.parametrize(
+    ("text", "si", "factor"),
+    [
+        ("psi", "Pa", Fraction("0.45359237") * Fraction("9.80665") / Fraction("0.0254") ** 2),
+        ("lbf*s/inch", "N*s/m", Fraction("0.45359237") * Fraction("9.80665") / Fraction("0.0254")),
+        ("bar/L", "Pa/(m**3)", Fraction(10) ** 8),
+        ("kgf", "N", Fraction("9.80665")),
+        ("atm", "Pa", Fraction(101_325)),
+        ("rpm", "1/s", None),
+    ],
+)
+def test_units_that_are_not_coherent_are_spelled_by_common_ones(text, si, factor):
+    unit = parse_unit(text)
+    assert (unit.si, parse_unit(unit.si).dimension) == (si, unit.dimension)
+    assert factor in (None, unit.factor)
 
 
 def test_a_rational_power_has_the_dimension_of_its_base_to_that_power():
