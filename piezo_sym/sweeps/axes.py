@@ -97,6 +97,9 @@ def targets(module: GeneratedModule) -> Iterator[Target]:
     for record in module.STATES:
         doc = f"at t = 0: {record.doc}"
         yield Target("initial", record.name, record.unit, doc, record.bank)
+    states = {record.name for record in module.STATES}
+    for record in (r for r in module.BODIES if f"T_{r.name}" not in states):
+        yield Target("initial", f"T_{record.name}", record.unit, f"at t = 0: {record.doc}", None)
 
 
 def read_values(

@@ -73,7 +73,7 @@ def sweep(
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
     over : name -> list or array of values; each is a dimension, and their product is run. Names
-        are those of parameters, `<bank>_count`, inputs and states (their values at t = 0); where
+        are those of parameters, `<bank>_count`, inputs, and of states and `T_<body>` at t = 0; where
         two quantities share one, write "parameters.x", "inputs.x" or "initial.x". Values are as
         for `simulate`, SI units; if one is a list of one value per lane, texts label all of them.
         A mapping of labels (numbers or texts) to values gives the dimension these labels. A tuple
@@ -100,8 +100,8 @@ def sweep(
     -------
     xarray.Dataset
         The quantities of `simulate`, over (swept dimensions, `time`, [bank]); a swept input is
-        `u_<input>`, over its own dimension, and others have none. A swept state's dimension is
-        `initial_<state>`. Banks with fewer lanes than the largest are padded with nan. `error`: ""
+        `u_<input>`, over its own dimension, and others have none. The dimension of a swept
+        start is `initial_<state>` or `initial_T_<body>`. Banks with fewer lanes than the largest are padded with nan. `error`: ""
         where a run succeeds.
 
     Raises

@@ -117,6 +117,15 @@ def test_initial_values_are_swept_by_the_states_names():
     assert_member(found.isel(initial_q=1, initial_phi=1), run)
 
 
+def test_temperatures_at_the_start_are_swept_by_their_names():
+    runs = sweep("piezo_stack", over={"T_body": [300.0, 320.0]}, inputs=DRIVE, **BASE)
+    assert runs.initial_T_body.values.tolist() == [300.0, 320.0]
+    assert runs.initial_T_body.attrs["units"] == "K"
+    for T in (300.0, 320.0):
+        found = runs.sel(initial_T_body=T)
+        assert_member(found, single(initial={"T_body": T}, inputs=DRIVE))
+
+
 def test_lanes_that_are_not_there_are_nan():
     over = {"hysteron_count": [1, 3], "L": [1e-3, 2e-3]}
     found = sweep("piezo_stack", over=over, inputs=DRIVE, **BASE)
