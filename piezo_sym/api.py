@@ -46,7 +46,10 @@ def of_spec(
     first, *others = signature(run).parameters.values()
     options = tuple(other.name for other in others)
     first = first.replace(name="model", annotation=Spec)
-    wrapper.__signature__ = signature(run).replace(parameters=[first, *others])
+    made = signature(run).replace(parameters=[first, *others])
+    if isinstance(run, type):  # it returns what it makes
+        made = made.replace(return_annotation=run)
+    wrapper.__signature__ = made
     return call  # type: ignore[return-value]  # the model may be given by name, too
 
 

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
 
 
+#: The most lines of a file's difference that are printed.
+MOST_LINES = 10
+
+
 def generate(
     specs: Annotated[
         list[str] | None, typer.Argument(metavar="[SPEC...]", help="Default: all shipped specs.")
@@ -32,8 +36,8 @@ def generate(
     """Generate the modules of specs into OUT/<model>/.
 
     With --check nothing is written: exit code 1 if OUT/<model>/ is not what the spec gives, file
-    for file and byte for byte, with the difference and what to do; with --all (or without SPEC)
-    also if anything else is in OUT.
+    for file and byte for byte, with the first differing lines and what to do; with --all (or
+    without SPEC) also if anything else is in OUT.
     """
     from piezo_sym.verification.process import started
 
@@ -70,7 +74,10 @@ def _check(
     faults = drift(models, out, complete=complete, allow_unproved=allow_unproved)
     for fault in faults:
         typer.echo(f"{path_text(fault.path)} {fault.fault}; {fault.remedy(command)}")
-        if fault.diff:
-            typer.echo(fault.diff)
+        lines = fault.diff.splitlines()
+        for line in lines[:MOST_LINES]:
+            typer.echo(line)
+        if more := len(lines[MOST_LINES:]):
+            typer.echo(f"... and {more} more lines of the difference")
     raise_if_drifted(faults, command)
     typer.echo(f"{len(models)} {'model' if len(models) == 1 else 'models'} up to date in {out}")

@@ -6,6 +6,8 @@ in C and returns the outputs y.  A step costs little more than a call of C: name
 are computed on demand.
 """
 
+from __future__ import annotations
+
 import ctypes
 import struct
 import threading
@@ -61,8 +63,9 @@ class Stepper:
     module : a generated module; `piezo_sym.Stepper` takes a model, a name or a path.
     step : length of a step [s]; a step that fails is halved.
     order : 2, 4, 6, 8 or 10: the order of the error in the step, where all is smooth.
-    parameters, initial, inputs : as for `simulate`; `inputs` are those at t = 0, numbers only. A
-        list of parameters makes as many plants: each array has a last axis for them.
+    parameters, initial, inputs : name -> number, as for `simulate`, `<bank>_count` and `T_<body>`
+        among them; `inputs` are those at t = 0, numbers only. A list of parameters makes as many
+        plants: each array has a last axis for them.
     every : steps of a call, its inputs held: the sample time is every*step.
     delay : calls until inputs act; those at t = 0 act until then.
     quantum : state, or output as `y_<port>` -> quantum of its measurement, SI units.
@@ -74,6 +77,13 @@ class Stepper:
     x : the state (n,), a copy, banks spread; `measured`: the state in multiples of quanta.
     time : the time [s] after the steps taken.
     ledger : integrals over ports and processes since t = 0, by the names of `simulate`'s Dataset.
+
+    Methods
+    -------
+    step(u) : take one step, or `every` steps, with the inputs u held: a list of one number per
+        input, in the order of `inputs`; of a dict [d[name] for name in stepper.inputs]. Returns
+        the outputs y (ports,) after it, in the order of `outputs`.
+    reset(x=None) : go back to t = 0, to the state x (n,), or to where it last began.
 
     Raises
     ------

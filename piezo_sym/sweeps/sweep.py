@@ -73,9 +73,9 @@ def sweep(
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
     over : name -> list or array of values; each is a dimension, and their product is run. Names
-        are those of parameters, `<bank>_count`, inputs, and of states and `T_<body>` at t = 0; where
-        two quantities share one, write "parameters.x", "inputs.x" or "initial.x". Values are as
-        for `simulate`, SI units; if one is a list of one value per lane, texts label all of them.
+        are those of parameters, `<bank>_count`, inputs, states and `T_<body>` (both at t = 0);
+        where two quantities share one, write "parameters.x", "inputs.x" or "initial.x". Values are
+        as for `simulate`, SI units; if one is a list of one value per lane, texts label all.
         A mapping of labels (numbers or texts) to values gives the dimension these labels. A tuple
         of names -> a list of tuples, or an array (points, names): zipped values, one dimension
         "L_T_e", with coordinates L and T_e along it.
@@ -101,8 +101,8 @@ def sweep(
     xarray.Dataset
         The quantities of `simulate`, over (swept dimensions, `time`, [bank]); a swept input is
         `u_<input>`, over its own dimension, and others have none. The dimension of a swept
-        start is `initial_<state>` or `initial_T_<body>`. Banks with fewer lanes than the largest are padded with nan. `error`: ""
-        where a run succeeds.
+        start is `initial_<state>` or `initial_T_<body>`. Banks with fewer lanes than the largest
+        are padded with nan. `error`: "" where a run succeeds.
 
     Raises
     ------

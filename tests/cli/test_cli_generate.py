@@ -1,5 +1,6 @@
 """``piezo-sym generate``: files, and the check that they are up to date."""
 
+import re
 import shutil
 from pathlib import Path
 
@@ -57,6 +58,14 @@ def test_a_drifted_file_is_exit_code_1_with_the_difference(call, out):
         f"piezo-sym: '{path}': differs from its spec; "
         f"run `piezo-sym generate --out {out}` and commit the result\n"
     )
+
+
+def test_of_a_long_difference_the_first_lines_are_printed(call, out):
+    path = out / NAME
+    path.write_text(path.read_text().replace(" = ", " := "))
+    printed = call("generate", "--check", "--out", out).out.splitlines()
+    assert len(printed) == 12
+    assert re.fullmatch(r"\.\.\. and \d\d+ more lines of the difference", printed[-1])
 
 
 def test_a_missing_file_names_the_command_for_the_specs_given(refused, spec_file, tmp_path):

@@ -3,6 +3,7 @@
 import copy
 import doctest
 import pickle
+import pydoc
 import threading
 from math import inf, nan
 from pathlib import Path
@@ -237,3 +238,10 @@ def test_a_stepper_is_not_pickled_but_another_can_be_made():
         pickle.dumps(stepper)
     with pytest.raises(UsageError, match="stays in its process"):
         copy.deepcopy(stepper)
+
+
+def test_help_shows_the_methods_and_what_they_take():
+    said = pydoc.plain(pydoc.render_doc(Stepper))
+    assert "-> piezo_sym.run.stepper.Stepper" in said
+    for words in ("    step(u) : ", "    reset(x=None) : ", "<bank>_count", "[d[name] for name in"):
+        assert words in said
