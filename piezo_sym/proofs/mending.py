@@ -7,11 +7,14 @@ power in, does so where c >= 0; factors of c that the domain keeps from being ne
 from collections.abc import Callable, Iterator
 from functools import reduce
 
+from piezo_sym.errors import STICKING
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Mul, Neg, names
 from piezo_sym.network import slope_of
 from piezo_sym.spec.tables import condition_text
 
+#: What to write for a law that jumps, as the end of a reason.
+JUMPS = f"; a law that jumps on purpose says discontinuous = true; {STICKING}"
 #: Whether law*letter, or a law without letter, is shown to be >= 0 in the domain.
 Shown = Callable[[Expr, str], bool]
 

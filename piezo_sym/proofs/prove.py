@@ -11,7 +11,6 @@ from fractions import Fraction
 
 import sympy as sp
 
-from piezo_sym.errors import STICKING
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.exact_eval import TooCloseError, all_hold, value_of
 from piezo_sym.expressions.text import spell
@@ -21,7 +20,7 @@ from piezo_sym.proofs.asked import Domain, simple_counterexample
 from piezo_sym.proofs.continuity import jumps, neighbour_questions
 from piezo_sym.proofs.domain import spec_points
 from piezo_sym.proofs.laws import branch_questions
-from piezo_sym.proofs.mending import mending
+from piezo_sym.proofs.mending import JUMPS, mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sign_analysis import whole_sign
@@ -245,9 +244,7 @@ def _refutation(question: Question, values: Mapping[str, Fraction]) -> Finding:
         reason += f", where {condition_text(question.law)} has no value"
     if question.original.op in {"=", "<"}:
         reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
-        reason += f"; a law that jumps on purpose says discontinuous = true; {STICKING}" * bool(
-            question.meeting
-        )
+        reason += JUMPS * bool(question.meeting)
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 
