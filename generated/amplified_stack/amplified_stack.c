@@ -14,7 +14,7 @@
  *
  * x = (Q, q, p, x, x_e, S)
  * u = (F, V, T_e)
- * p_ = pointer to amplified_stack_parameters, with an underscore beside the model's own p
+ * p_ = pointer to amplified_stack_parameters; the underscore tells it from p, a name of the model
  */
 #include "amplified_stack.h"
 
@@ -279,7 +279,7 @@ void amplified_stack_heat(const double *restrict x_,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void amplified_stack_entropy_production(const double *restrict x_,
@@ -520,7 +520,7 @@ void amplified_stack_jacobian(const double *restrict x_,
     out[5*n_ + 5] = (-(heat_leads + heat_losses + heat_bumper)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void amplified_stack_margins(const double *restrict x_,
                              const double *restrict u,
                              const amplified_stack_parameters *restrict p_,

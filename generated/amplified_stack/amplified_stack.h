@@ -14,7 +14,7 @@
  *
  * x = (Q, q, p, x, x_e, S)
  * u = (F, V, T_e)
- * p_ = pointer to amplified_stack_parameters, with an underscore beside the model's own p
+ * p_ = pointer to amplified_stack_parameters; the underscore tells it from p, a name of the model
  */
 #ifndef PIEZO_SYM_amplified_stack_H
 #define PIEZO_SYM_amplified_stack_H
@@ -167,7 +167,7 @@ void amplified_stack_heat(const double *x_,
                           double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x_[n], read: Q [C], q [m], p [kg*m/s], x [m], x_e [m], S [J/K]
  * u[amplified_stack_input_count], read: F [N], V [V], T_e [K]
@@ -203,7 +203,7 @@ void amplified_stack_elements(const double *x_,
                               double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x_[n], read: Q [C], q [m], p [kg*m/s], x [m], x_e [m], S [J/K]
  * u[amplified_stack_input_count], read: F [N], V [V], T_e [K]
  * out[amplified_stack_condition_count], written; must not overlap another argument

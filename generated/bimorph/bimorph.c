@@ -14,7 +14,7 @@
  *
  * x = (x, p, S, Q_u, Q_l)
  * u = (F, V_b, V, T_e)
- * p_ = pointer to bimorph_parameters, with an underscore beside the model's own p
+ * p_ = pointer to bimorph_parameters; the underscore tells it from p, a name of the model
  */
 #include "bimorph.h"
 
@@ -295,7 +295,7 @@ void bimorph_heat(const double *restrict x_,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void bimorph_entropy_production(const double *restrict x_,
@@ -536,7 +536,7 @@ void bimorph_jacobian(const double *restrict x_,
     out[4*n + 4] = di_output_dQ_l + di_input_dQ_l;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void bimorph_margins(const double *restrict x_,
                      const double *restrict u,
                      const bimorph_parameters *restrict p_,

@@ -14,7 +14,7 @@
  *
  * x = (x, p, S, Q_u, Q_l)
  * u = (F, V_b, V, T_e)
- * p_ = pointer to bimorph_parameters, with an underscore beside the model's own p
+ * p_ = pointer to bimorph_parameters; the underscore tells it from p, a name of the model
  */
 #ifndef PIEZO_SYM_bimorph_H
 #define PIEZO_SYM_bimorph_H
@@ -151,7 +151,7 @@ void bimorph_temperatures(const double *x_, const bimorph_parameters *p_, double
 void bimorph_heat(const double *x_, const double *u, const bimorph_parameters *p_, double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x_[n], read: x [m], p [kg*m/s], S [J/K], Q_u [C], Q_l [C]
  * u[bimorph_input_count], read: F [N], V_b [V], V [V], T_e [K]
@@ -185,7 +185,7 @@ void bimorph_elements(const double *x_,
                       double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x_[n], read: x [m], p [kg*m/s], S [J/K], Q_u [C], Q_l [C]
  * u[bimorph_input_count], read: F [N], V_b [V], V [V], T_e [K]
  * out[bimorph_condition_count], written; must not overlap another argument

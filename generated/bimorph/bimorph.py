@@ -13,7 +13,7 @@ Arrays have shape (n, *batch); values are in SI units.
 
 x = (x, p, S, Q_u, Q_l)
 u = (F, V_b, V, T_e)
-p_ = Parameters(), with an underscore beside the model's own p
+p_ = Parameters(); the underscore tells it from p, a name of the model
 """
 
 from dataclasses import dataclass
@@ -41,7 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
-# rows of x, and of u with their values where nothing else is said
+# rows of x; rows of u, and their default values
 STATES = (
     Record("x", "m", "extension of spring 'bending'"),
     Record("p", "kg*m/s", "momentum of mass 'tip'"),
@@ -452,7 +452,7 @@ def heat(x_, u, p_, /):
 
 
 def entropy_production(x_, u, p_, /):
-    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (3, *batch)."""
+    """Entropy production of each process [W/K], heat exchange with ambients not included; of a bank, one row per lane; shape (3, *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     l = p_.l
@@ -687,7 +687,7 @@ def jacobian(x_, u, p_, /):
 
 
 def margins(x_, u, p_, /):
-    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which each condition of DOMAIN holds; of a bank, the least one; shape (len(DOMAIN), *batch)."""
     x_ = _states(x_, p_)
     u = _inputs(u)
     l = p_.l

@@ -14,7 +14,7 @@
  *
  * x = (x, p, S, Q_u, Q_l)
  * u = (F, V_b, V, T_e)
- * p_ = pointer to bimorph_parameters, with an underscore beside the model's own p
+ * p_ = pointer to bimorph_parameters; the underscore tells it from p, a name of the model
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the

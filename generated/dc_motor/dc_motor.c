@@ -225,7 +225,7 @@ void dc_motor_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void dc_motor_entropy_production(const double *restrict x,
@@ -406,7 +406,7 @@ void dc_motor_jacobian(const double *restrict x,
         + (-(heat_winding + heat_bearing)/power_2(T) - lam*T_e/power_2(T))*dT_minus_T_0_dS;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void dc_motor_margins(const double *restrict x,
                       const double *restrict u,
                       const dc_motor_parameters *restrict p,

@@ -148,7 +148,7 @@ void dc_motor_temperatures(const double *x, const dc_motor_parameters *p, double
 void dc_motor_heat(const double *x, const double *u, const dc_motor_parameters *p, double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: phi [Wb], H [N*m*s], S [J/K]
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
@@ -181,7 +181,7 @@ void dc_motor_elements(const double *x,
                        double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: phi [Wb], H [N*m*s], S [J/K]
  * u[dc_motor_input_count], read: V_in [V], tau [N*m], T_e [K]
  * out[dc_motor_condition_count], written; must not overlap another argument

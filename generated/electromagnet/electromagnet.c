@@ -14,7 +14,7 @@
  *
  * x = (q, p, S, phi, x)
  * u = (V_in, T_e)
- * p_ = pointer to electromagnet_parameters, with an underscore beside the model's own p
+ * p_ = pointer to electromagnet_parameters; the underscore tells it from p, a name of the model
  */
 #include "electromagnet.h"
 
@@ -222,7 +222,7 @@ void electromagnet_heat(const double *restrict x_,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void electromagnet_entropy_production(const double *restrict x_,
@@ -392,7 +392,7 @@ void electromagnet_jacobian(const double *restrict x_,
     out[4*n + 1] = 1.0/m;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void electromagnet_margins(const double *restrict x_,
                            const double *restrict u,
                            const electromagnet_parameters *restrict p_,

@@ -14,7 +14,7 @@
  *
  * x = (q, p, S, phi, x)
  * u = (V_in, T_e)
- * p_ = pointer to electromagnet_parameters, with an underscore beside the model's own p
+ * p_ = pointer to electromagnet_parameters; the underscore tells it from p, a name of the model
  */
 #ifndef PIEZO_SYM_electromagnet_H
 #define PIEZO_SYM_electromagnet_H
@@ -159,7 +159,7 @@ void electromagnet_heat(const double *x_,
                         double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
  * u[electromagnet_input_count], read: V_in [V], T_e [K]
@@ -189,7 +189,7 @@ void electromagnet_elements(const double *x_,
                             double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x_[n], read: q [m], p [kg*m/s], S [J/K], phi [Wb], x [m]
  * u[electromagnet_input_count], read: V_in [V], T_e [K]
  * out[electromagnet_condition_count], written; must not overlap another argument

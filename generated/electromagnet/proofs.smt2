@@ -1,7 +1,7 @@
 ; Made by piezo_sym 0.1.0; do not edit: change the spec, then run `piezo-sym generate`.
 ; Claims on the laws of electromagnet.  Each query asserts the opposite of its claim:
-; `unsat` proves it, for all real numbers in the domain.  Functions such as exp stand
-; as symbols, of which some bounds are given.  Names have a question mark before them.
+; `unsat` proves it, for all real numbers in the domain.  A function such as exp is
+; a symbol with bounds on its values.  Names begin with a question mark.
 (set-logic QF_NRA)
 
 ; temperature of winding: c != 0

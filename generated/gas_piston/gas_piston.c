@@ -14,7 +14,7 @@
  *
  * x = (p, q, S)
  * u = (F, T_e)
- * p_ = pointer to gas_piston_parameters, with an underscore beside the model's own p
+ * p_ = pointer to gas_piston_parameters; the underscore tells it from p, a name of the model
  */
 #include "gas_piston.h"
 
@@ -199,7 +199,7 @@ void gas_piston_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void gas_piston_entropy_production(const double *restrict x,
@@ -329,7 +329,7 @@ void gas_piston_jacobian(const double *restrict x,
     out[2*n + 2] = (-heat_friction/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void gas_piston_margins(const double *restrict x,
                         const double *restrict u,
                         const gas_piston_parameters *restrict p_,

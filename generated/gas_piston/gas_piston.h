@@ -14,7 +14,7 @@
  *
  * x = (p, q, S)
  * u = (F, T_e)
- * p_ = pointer to gas_piston_parameters, with an underscore beside the model's own p
+ * p_ = pointer to gas_piston_parameters; the underscore tells it from p, a name of the model
  */
 #ifndef PIEZO_SYM_gas_piston_H
 #define PIEZO_SYM_gas_piston_H
@@ -150,7 +150,7 @@ void gas_piston_heat(const double *x,
                      double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: p [kg*m/s], q [m], S [J/K]
  * u[gas_piston_input_count], read: F [N], T_e [K]
@@ -177,7 +177,7 @@ void gas_piston_elements(const double *x,
                          double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: p [kg*m/s], q [m], S [J/K]
  * u[gas_piston_input_count], read: F [N], T_e [K]
  * out[gas_piston_condition_count], written; must not overlap another argument

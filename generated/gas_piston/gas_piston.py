@@ -13,7 +13,7 @@ Arrays have shape (n, *batch); values are in SI units.
 
 x = (p, q, S)
 u = (F, T_e)
-p_ = Parameters(), with an underscore beside the model's own p
+p_ = Parameters(); the underscore tells it from p, a name of the model
 """
 
 from dataclasses import dataclass
@@ -41,7 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
-# rows of x, and of u with their values where nothing else is said
+# rows of x; rows of u, and their default values
 STATES = (
     Record("p", "kg*m/s", "momentum of mass 'piston'"),
     Record("q", "m", "extension of storage 'gas'"),
@@ -309,7 +309,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (1, *batch)."""
+    """Entropy production of each process [W/K], heat exchange with ambients not included; of a bank, one row per lane; shape (1, *batch)."""
     x = _states(x, p_)
     V_0 = p_.V_0
     A = p_.A
@@ -431,7 +431,7 @@ def jacobian(x, u, p_, /):
 
 
 def margins(x, u, p_, /):
-    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which each condition of DOMAIN holds; of a bank, the least one; shape (len(DOMAIN), *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     V_0 = p_.V_0

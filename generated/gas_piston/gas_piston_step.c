@@ -14,7 +14,7 @@
  *
  * x = (p, q, S)
  * u = (F, T_e)
- * p_ = pointer to gas_piston_parameters, with an underscore beside the model's own p
+ * p_ = pointer to gas_piston_parameters; the underscore tells it from p, a name of the model
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the

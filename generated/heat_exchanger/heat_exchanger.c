@@ -166,7 +166,7 @@ void heat_exchanger_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void heat_exchanger_entropy_production(const double *restrict x,
@@ -265,7 +265,7 @@ void heat_exchanger_jacobian(const double *restrict x,
         - heat_contact/power_2(T_cold)*dT_cold_dS_cold;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void heat_exchanger_margins(const double *restrict x,
                             const double *restrict u,
                             const heat_exchanger_parameters *restrict p,

@@ -148,7 +148,7 @@ void heat_exchanger_heat(const double *x,
                          double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: S_hot [J/K], S_cold [J/K]
  * u[heat_exchanger_input_count], read
@@ -173,7 +173,7 @@ void heat_exchanger_elements(const double *x,
                              double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: S_hot [J/K], S_cold [J/K]
  * u[heat_exchanger_input_count], read
  * out[heat_exchanger_condition_count], written; must not overlap another argument

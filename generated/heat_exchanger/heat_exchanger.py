@@ -41,7 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
-# rows of x, and of u with their values where nothing else is said
+# rows of x; rows of u, and their default values
 STATES = (
     Record("S_hot", "J/K", "entropy of thermal_mass 'hot'"),
     Record("S_cold", "J/K", "entropy of thermal_mass 'cold'"),
@@ -242,7 +242,7 @@ def heat(x, u, p, /):
 
 
 def entropy_production(x, u, p, /):
-    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (1, *batch)."""
+    """Entropy production of each process [W/K], heat exchange with ambients not included; of a bank, one row per lane; shape (1, *batch)."""
     x = _states(x, p)
     c_1 = p.c_1
     c_2 = p.c_2
@@ -328,7 +328,7 @@ def jacobian(x, u, p, /):
 
 
 def margins(x, u, p, /):
-    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which each condition of DOMAIN holds; of a bank, the least one; shape (len(DOMAIN), *batch)."""
     x = _states(x, p)
     c_1 = p.c_1
     c_2 = p.c_2

@@ -14,7 +14,7 @@
  *
  * x = (V, p, q, S)
  * u = (p_in, F, T_e)
- * p_ = pointer to hydraulic_cylinder_parameters, with an underscore beside the model's own p
+ * p_ = pointer to hydraulic_cylinder_parameters; the underscore tells it from p, a name of the model
  */
 #include "hydraulic_cylinder.h"
 
@@ -250,7 +250,7 @@ void hydraulic_cylinder_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void hydraulic_cylinder_entropy_production(const double *restrict x,
@@ -433,7 +433,7 @@ void hydraulic_cylinder_jacobian(const double *restrict x,
     out[3*n + 3] = (-(heat_orifice + heat_friction)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void hydraulic_cylinder_margins(const double *restrict x,
                                 const double *restrict u,
                                 const hydraulic_cylinder_parameters *restrict p_,

@@ -14,7 +14,7 @@
  *
  * x = (V, p, q, S)
  * u = (p_in, F, T_e)
- * p_ = pointer to hydraulic_cylinder_parameters, with an underscore beside the model's own p
+ * p_ = pointer to hydraulic_cylinder_parameters; the underscore tells it from p, a name of the model
  */
 #ifndef PIEZO_SYM_hydraulic_cylinder_H
 #define PIEZO_SYM_hydraulic_cylinder_H
@@ -162,7 +162,7 @@ void hydraulic_cylinder_heat(const double *x,
                              double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]
@@ -194,7 +194,7 @@ void hydraulic_cylinder_elements(const double *x,
                                  double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: V [m**3], p [kg*m/s], q [m], S [J/K]
  * u[hydraulic_cylinder_input_count], read: p_in [Pa], F [N], T_e [K]
  * out[hydraulic_cylinder_condition_count], written; must not overlap another argument

@@ -14,7 +14,7 @@
  *
  * x = (V, p, q, S)
  * u = (p_in, F, T_e)
- * p_ = pointer to hydraulic_cylinder_parameters, with an underscore beside the model's own p
+ * p_ = pointer to hydraulic_cylinder_parameters; the underscore tells it from p, a name of the model
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the

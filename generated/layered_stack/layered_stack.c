@@ -410,7 +410,7 @@ void layered_stack_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void layered_stack_entropy_production(const double *restrict x,
@@ -932,7 +932,7 @@ void layered_stack_jacobian(const double *restrict x,
         + (-(heat_hysteron_3 + heat_damper_3 + heat_contact_2)/power_2(T_body_3) - lam*T_e/power_2(T_body_3))*dT_body_3_minus_T_0_dS_3;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void layered_stack_margins(const double *restrict x,
                            const double *restrict u,
                            const layered_stack_parameters *restrict p,

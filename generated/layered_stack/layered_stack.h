@@ -169,7 +169,7 @@ void layered_stack_heat(const double *x,
                         double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
  *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
@@ -221,7 +221,7 @@ void layered_stack_elements(const double *x,
                             double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2 [kg*m/s],
  *     Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb], S_3 [J/K]
  * u[layered_stack_input_count], read: F_ext [N], V_in [V], T_e [K]

@@ -33,9 +33,9 @@ long layered_stack_step_size(const layered_stack_parameters *p);
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
  *     method. The booked energies and entropies close both balances to round-off. Returns 1 if
- *     the step was taken. Returns 0, with x unchanged, if no such step in the domain was
- *     found: a shorter one may exist. Most steps take two or three iterations, the hardest
- *     some thousand.
+ *     the step was taken. Returns 0, and leaves x unchanged, if no step that stays in the
+ *     domain was found: a shorter one may exist. Most steps take two or three iterations, the
+ *     hardest some thousand.
  * x[n], read and written: q_1 [m], p_1 [kg*m/s], Q_1 [C], phi_1 [Wb], S_1 [J/K], q_2 [m], p_2
  *     [kg*m/s], Q_2 [C], phi_2 [Wb], S_2 [J/K], q_3 [m], p_3 [kg*m/s], Q_3 [C], phi_3 [Wb],
  *     S_3 [J/K]

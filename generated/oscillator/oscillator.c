@@ -14,7 +14,7 @@
  *
  * x = (q, p, S)
  * u = (F)
- * p_ = pointer to oscillator_parameters, with an underscore beside the model's own p
+ * p_ = pointer to oscillator_parameters; the underscore tells it from p, a name of the model
  */
 #include "oscillator.h"
 
@@ -164,7 +164,7 @@ void oscillator_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void oscillator_entropy_production(const double *restrict x,
@@ -273,7 +273,7 @@ void oscillator_jacobian(const double *restrict x,
     out[2*n + 2] = -heat_damper/power_2(T)*dT_dS;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void oscillator_margins(const double *restrict x,
                         const double *restrict u,
                         const oscillator_parameters *restrict p_,

@@ -14,7 +14,7 @@
  *
  * x = (q, p, S)
  * u = (F)
- * p_ = pointer to oscillator_parameters, with an underscore beside the model's own p
+ * p_ = pointer to oscillator_parameters; the underscore tells it from p, a name of the model
  */
 #ifndef PIEZO_SYM_oscillator_H
 #define PIEZO_SYM_oscillator_H
@@ -141,7 +141,7 @@ void oscillator_heat(const double *x,
                      double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], S [J/K]
  * u[oscillator_input_count], read: F [N]
@@ -168,7 +168,7 @@ void oscillator_elements(const double *x,
                          double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: q [m], p [kg*m/s], S [J/K]
  * u[oscillator_input_count], read: F [N]
  * out[oscillator_condition_count], written; must not overlap another argument

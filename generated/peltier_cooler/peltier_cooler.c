@@ -214,7 +214,7 @@ void peltier_cooler_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void peltier_cooler_entropy_production(const double *restrict x,
@@ -393,7 +393,7 @@ void peltier_cooler_jacobian(const double *restrict x,
         + (-(heat_warm + heat_legs)/power_2(T_sink) - h*T_e/power_2(T_sink))*dT_sink_dS_h;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void peltier_cooler_margins(const double *restrict x,
                             const double *restrict u,
                             const peltier_cooler_parameters *restrict p,

@@ -153,7 +153,7 @@ void peltier_cooler_heat(const double *x,
                          double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]
@@ -183,7 +183,7 @@ void peltier_cooler_elements(const double *x,
                              double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]
  * out[peltier_cooler_condition_count], written; must not overlap another argument

@@ -41,7 +41,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
-# rows of x, and of u with their values where nothing else is said
+# rows of x; rows of u, and their default values
 STATES = (
     Record("phi", "Wb", "flux linkage of inductor 'leads'"),
     Record("S_c", "J/K", "entropy of thermal_mass 'plate'"),
@@ -336,7 +336,7 @@ def heat(x, u, p, /):
 
 
 def entropy_production(x, u, p, /):
-    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (3, *batch)."""
+    """Entropy production of each process [W/K], heat exchange with ambients not included; of a bank, one row per lane; shape (3, *batch)."""
     x = _states(x, p)
     R = p.R
     lam = p.lam
@@ -499,7 +499,7 @@ def jacobian(x, u, p, /):
 
 
 def margins(x, u, p, /):
-    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which each condition of DOMAIN holds; of a bank, the least one; shape (len(DOMAIN), *batch)."""
     x = _states(x, p)
     u = _inputs(u)
     R = p.R

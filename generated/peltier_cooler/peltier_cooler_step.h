@@ -33,9 +33,9 @@ long peltier_cooler_step_size(const peltier_cooler_parameters *p);
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
  *     method. The booked energies and entropies close both balances to round-off. Returns 1 if
- *     the step was taken. Returns 0, with x unchanged, if no such step in the domain was
- *     found: a shorter one may exist. Most steps take two or three iterations, the hardest
- *     some thousand.
+ *     the step was taken. Returns 0, and leaves x unchanged, if no step that stays in the
+ *     domain was found: a shorter one may exist. Most steps take two or three iterations, the
+ *     hardest some thousand.
  * x[n], read and written: phi [Wb], S_c [J/K], S_h [J/K]
  * u[peltier_cooler_input_count], read: V_in [V], P [W], T_e [K]; constant during the step
  * h, read: the length of the step [s]

@@ -14,7 +14,7 @@
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to piezo_stack_parameters, with an underscore beside the model's own p
+ * p_ = pointer to piezo_stack_parameters; the underscore tells it from p, a name of the model
  * bank hysteron: lanes j = 1 ... hysteron_count
  */
 #include "piezo_stack.h"
@@ -289,7 +289,7 @@ void piezo_stack_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void piezo_stack_entropy_production(const double *restrict x,
@@ -514,7 +514,7 @@ void piezo_stack_jacobian(const double *restrict x,
         + (-(heat_hysteron + heat_damper)/power_2(T) - lam*T_e/power_2(T))*dT_minus_T_0_dS;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void piezo_stack_margins(const double *restrict x,
                          const double *restrict u,
                          const piezo_stack_parameters *restrict p_,

@@ -14,7 +14,7 @@
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to piezo_stack_parameters, with an underscore beside the model's own p
+ * p_ = pointer to piezo_stack_parameters; the underscore tells it from p, a name of the model
  * bank hysteron: lanes j = 1 ... hysteron_count
  */
 #ifndef PIEZO_SYM_piezo_stack_H
@@ -160,7 +160,7 @@ void piezo_stack_heat(const double *x,
                       double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
@@ -195,7 +195,7 @@ void piezo_stack_elements(const double *x,
                           double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[piezo_stack_condition_count], written; must not overlap another argument

@@ -13,7 +13,7 @@ Arrays have shape (n, *batch); values are in SI units.
 
 x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
 u = (F_ext, V_in, T_e)
-p_ = Parameters(), with an underscore beside the model's own p
+p_ = Parameters(); the underscore tells it from p, a name of the model
 bank hysteron: lanes j = 1 ... Parameters.hysteron_count
 """
 
@@ -42,7 +42,7 @@ class Condition(NamedTuple):
     strict: bool
 
 
-# rows of x, and of u with their values where nothing else is said
+# rows of x; rows of u, and their default values
 STATES = (
     Record("q", "m", "extension of spring 'spring'"),
     Record("p", "kg*m/s", "momentum of mass 'mass'"),
@@ -402,7 +402,7 @@ def heat(x, u, p_, /):
 
 
 def entropy_production(x, u, p_, /):
-    """Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a bank, one row per lane; shape (1 + hysteron_count, *batch)."""
+    """Entropy production of each process [W/K], heat exchange with ambients not included; of a bank, one row per lane; shape (1 + hysteron_count, *batch)."""
     x = _states(x, p_)
     hysteron_count = p_.hysteron_count
     M = p_.M
@@ -598,7 +598,7 @@ def jacobian(x, u, p_, /):
 
 
 def margins(x, u, p_, /):
-    """Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes; shape (len(DOMAIN), *batch)."""
+    """Margin by which each condition of DOMAIN holds; of a bank, the least one; shape (len(DOMAIN), *batch)."""
     x = _states(x, p_)
     u = _inputs(u)
     hysteron_count = p_.hysteron_count

@@ -14,7 +14,7 @@
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to piezo_stack_parameters, with an underscore beside the model's own p
+ * p_ = pointer to piezo_stack_parameters; the underscore tells it from p, a name of the model
  * bank hysteron: lanes j = 1 ... hysteron_count
  */
 /*

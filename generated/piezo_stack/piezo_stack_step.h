@@ -14,7 +14,7 @@
  *
  * x = (q, p, Q_C, phi_1 ... phi_hysteron_count, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to piezo_stack_parameters, with an underscore beside the model's own p
+ * p_ = pointer to piezo_stack_parameters; the underscore tells it from p, a name of the model
  * bank hysteron: lanes j = 1 ... hysteron_count
  */
 #ifndef PIEZO_SYM_piezo_stack_STEP_H
@@ -34,9 +34,9 @@ long piezo_stack_step_size(const piezo_stack_parameters *p_);
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
  *     method. The booked energies and entropies close both balances to round-off. Returns 1 if
- *     the step was taken. Returns 0, with x unchanged, if no such step in the domain was
- *     found: a shorter one may exist. Most steps take two or three iterations, the hardest
- *     some thousand.
+ *     the step was taken. Returns 0, and leaves x unchanged, if no step that stays in the
+ *     domain was found: a shorter one may exist. Most steps take two or three iterations, the
+ *     hardest some thousand.
  * x[n], read and written: q [m], p [kg*m/s], Q_C [C], phi_1 ... phi_hysteron_count [Wb], S
  *     [J/K]
  * u[piezo_stack_input_count], read: F_ext [N], V_in [V], T_e [K]; constant during the step

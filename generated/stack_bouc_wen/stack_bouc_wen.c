@@ -14,7 +14,7 @@
  *
  * x = (q, p, Q, Q_h, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to stack_bouc_wen_parameters, with an underscore beside the model's own p
+ * p_ = pointer to stack_bouc_wen_parameters; the underscore tells it from p, a name of the model
  */
 #include "stack_bouc_wen.h"
 
@@ -267,7 +267,7 @@ void stack_bouc_wen_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void stack_bouc_wen_entropy_production(const double *restrict x,
@@ -486,7 +486,7 @@ void stack_bouc_wen_jacobian(const double *restrict x,
     out[4*n_ + 4] = (-(heat_damper + heat_hysteresis + heat_leads)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void stack_bouc_wen_margins(const double *restrict x,
                             const double *restrict u,
                             const stack_bouc_wen_parameters *restrict p_,

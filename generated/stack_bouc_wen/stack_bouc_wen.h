@@ -14,7 +14,7 @@
  *
  * x = (q, p, Q, Q_h, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to stack_bouc_wen_parameters, with an underscore beside the model's own p
+ * p_ = pointer to stack_bouc_wen_parameters; the underscore tells it from p, a name of the model
  */
 #ifndef PIEZO_SYM_stack_bouc_wen_H
 #define PIEZO_SYM_stack_bouc_wen_H
@@ -165,7 +165,7 @@ void stack_bouc_wen_heat(const double *x,
                          double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
@@ -198,7 +198,7 @@ void stack_bouc_wen_elements(const double *x,
                              double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: q [m], p [kg*m/s], Q [C], Q_h [C], S [J/K]
  * u[stack_bouc_wen_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[stack_bouc_wen_condition_count], written; must not overlap another argument

@@ -14,7 +14,7 @@
  *
  * x = (q, p, Q, Q_h, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to stack_bouc_wen_parameters, with an underscore beside the model's own p
+ * p_ = pointer to stack_bouc_wen_parameters; the underscore tells it from p, a name of the model
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the

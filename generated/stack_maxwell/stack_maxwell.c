@@ -14,7 +14,7 @@
  *
  * x = (Q, p, q, z_1 ... z_slips_count, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to stack_maxwell_parameters, with an underscore beside the model's own p
+ * p_ = pointer to stack_maxwell_parameters; the underscore tells it from p, a name of the model
  * bank slips: lanes j = 1 ... slips_count
  */
 #include "stack_maxwell.h"
@@ -290,7 +290,7 @@ void stack_maxwell_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void stack_maxwell_entropy_production(const double *restrict x,
@@ -534,7 +534,7 @@ void stack_maxwell_jacobian(const double *restrict x,
     out[(3 + slips_count)*n + 3 + slips_count] = (-(heat_leads + heat_slips + heat_damper)/power_2(T) - lam*T_e/power_2(T))*dT_dS;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void stack_maxwell_margins(const double *restrict x,
                            const double *restrict u,
                            const stack_maxwell_parameters *restrict p_,

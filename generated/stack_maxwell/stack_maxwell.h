@@ -14,7 +14,7 @@
  *
  * x = (Q, p, q, z_1 ... z_slips_count, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to stack_maxwell_parameters, with an underscore beside the model's own p
+ * p_ = pointer to stack_maxwell_parameters; the underscore tells it from p, a name of the model
  * bank slips: lanes j = 1 ... slips_count
  */
 #ifndef PIEZO_SYM_stack_maxwell_H
@@ -162,7 +162,7 @@ void stack_maxwell_heat(const double *x,
                         double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
@@ -197,7 +197,7 @@ void stack_maxwell_elements(const double *x,
                             double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]
  * out[stack_maxwell_condition_count], written; must not overlap another argument

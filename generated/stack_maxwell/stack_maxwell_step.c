@@ -14,7 +14,7 @@
  *
  * x = (Q, p, q, z_1 ... z_slips_count, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to stack_maxwell_parameters, with an underscore beside the model's own p
+ * p_ = pointer to stack_maxwell_parameters; the underscore tells it from p, a name of the model
  * bank slips: lanes j = 1 ... slips_count
  */
 /*

@@ -14,7 +14,7 @@
  *
  * x = (Q, p, q, z_1 ... z_slips_count, S)
  * u = (F_ext, V_in, T_e)
- * p_ = pointer to stack_maxwell_parameters, with an underscore beside the model's own p
+ * p_ = pointer to stack_maxwell_parameters; the underscore tells it from p, a name of the model
  * bank slips: lanes j = 1 ... slips_count
  */
 #ifndef PIEZO_SYM_stack_maxwell_STEP_H
@@ -34,9 +34,9 @@ long stack_maxwell_step_size(const stack_maxwell_parameters *p_);
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
  *     method. The booked energies and entropies close both balances to round-off. Returns 1 if
- *     the step was taken. Returns 0, with x unchanged, if no such step in the domain was
- *     found: a shorter one may exist. Most steps take two or three iterations, the hardest
- *     some thousand.
+ *     the step was taken. Returns 0, and leaves x unchanged, if no step that stays in the
+ *     domain was found: a shorter one may exist. Most steps take two or three iterations, the
+ *     hardest some thousand.
  * x[n], read and written: Q [C], p [kg*m/s], q [m], z_1 ... z_slips_count [m], S [J/K]
  * u[stack_maxwell_input_count], read: F_ext [N], V_in [V], T_e [K]; constant during the step
  * h, read: the length of the step [s]

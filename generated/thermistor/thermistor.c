@@ -164,7 +164,7 @@ void thermistor_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void thermistor_entropy_production(const double *restrict x,
@@ -277,7 +277,7 @@ void thermistor_jacobian(const double *restrict x,
     out[2*n + 2] = dheat_bead_dS/T - heat_bead/power_2(T)*dT_dS;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void thermistor_margins(const double *restrict x,
                         const double *restrict u,
                         const thermistor_parameters *restrict p,

@@ -143,7 +143,7 @@ void thermistor_heat(const double *x,
                      double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: phi [Wb], Q [C], S [J/K]
  * u[thermistor_input_count], read
@@ -169,7 +169,7 @@ void thermistor_elements(const double *x,
                          double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: phi [Wb], Q [C], S [J/K]
  * u[thermistor_input_count], read
  * out[thermistor_condition_count], written; must not overlap another argument

@@ -14,7 +14,7 @@
  *
  * x = (q, p, phi, S_w, S_m)
  * u = (V_in, T_e)
- * p_ = pointer to voice_coil_parameters, with an underscore beside the model's own p
+ * p_ = pointer to voice_coil_parameters; the underscore tells it from p, a name of the model
  */
 #include "voice_coil.h"
 
@@ -231,7 +231,7 @@ void voice_coil_heat(const double *restrict x,
 }
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  * bank, one row per lane.
  */
 void voice_coil_entropy_production(const double *restrict x,
@@ -436,7 +436,7 @@ void voice_coil_jacobian(const double *restrict x,
         + (-(heat_losses + heat_contact)/power_2(T_magnet) - h*T_e/power_2(T_magnet))*dT_magnet_dS_m;
 }
 
-/* Margin by which conditions of the domain hold; of a bank, the least of its lanes. */
+/* Margin by which each condition of the domain holds; of a bank, the least one. */
 void voice_coil_margins(const double *restrict x,
                         const double *restrict u,
                         const voice_coil_parameters *restrict p_,

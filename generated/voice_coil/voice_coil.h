@@ -14,7 +14,7 @@
  *
  * x = (q, p, phi, S_w, S_m)
  * u = (V_in, T_e)
- * p_ = pointer to voice_coil_parameters, with an underscore beside the model's own p
+ * p_ = pointer to voice_coil_parameters; the underscore tells it from p, a name of the model
  */
 #ifndef PIEZO_SYM_voice_coil_H
 #define PIEZO_SYM_voice_coil_H
@@ -158,7 +158,7 @@ void voice_coil_heat(const double *x,
                      double *out);
 
 /*
- * Entropy that each process produces [W/K], heat exchange with the surroundings aside; of a
+ * Entropy production of each process [W/K], heat exchange with ambients not included; of a
  *     bank, one row per lane.
  * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]
@@ -190,7 +190,7 @@ void voice_coil_elements(const double *x,
                          double *out);
 
 /*
- * Margin by which conditions of the domain hold; of a bank, the least of its lanes.
+ * Margin by which each condition of the domain holds; of a bank, the least one.
  * x[n], read: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]
  * out[voice_coil_condition_count], written; must not overlap another argument

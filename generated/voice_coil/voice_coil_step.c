@@ -14,7 +14,7 @@
  *
  * x = (q, p, phi, S_w, S_m)
  * u = (V_in, T_e)
- * p_ = pointer to voice_coil_parameters, with an underscore beside the model's own p
+ * p_ = pointer to voice_coil_parameters; the underscore tells it from p, a name of the model
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the

@@ -14,7 +14,7 @@
  *
  * x = (q, p, phi, S_w, S_m)
  * u = (V_in, T_e)
- * p_ = pointer to voice_coil_parameters, with an underscore beside the model's own p
+ * p_ = pointer to voice_coil_parameters; the underscore tells it from p, a name of the model
  */
 #ifndef PIEZO_SYM_voice_coil_STEP_H
 #define PIEZO_SYM_voice_coil_STEP_H
@@ -33,9 +33,9 @@ long voice_coil_step_size(const voice_coil_parameters *p_);
 /*
  * Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's
  *     method. The booked energies and entropies close both balances to round-off. Returns 1 if
- *     the step was taken. Returns 0, with x unchanged, if no such step in the domain was
- *     found: a shorter one may exist. Most steps take two or three iterations, the hardest
- *     some thousand.
+ *     the step was taken. Returns 0, and leaves x unchanged, if no step that stays in the
+ *     domain was found: a shorter one may exist. Most steps take two or three iterations, the
+ *     hardest some thousand.
  * x[n], read and written: q [m], p [kg*m/s], phi [Wb], S_w [J/K], S_m [J/K]
  * u[voice_coil_input_count], read: V_in [V], T_e [K]; constant during the step
  * h, read: the length of the step [s]

@@ -45,8 +45,8 @@ FUNCTIONS = {
         STATE_INPUT,
     ),
     "entropy_production": (
-        "Entropy that each process produces [W/K], heat exchange with the surroundings aside; of "
-        "a bank, one row per lane",
+        "Entropy production of each process [W/K], heat exchange with ambients not included; of a "
+        "bank, one row per lane",
         STATE_INPUT,
     ),
 }

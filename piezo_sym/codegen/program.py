@@ -210,7 +210,7 @@ def head_lines(
     `plain` makes a text safe; `parameters` are name and type of the parameters in functions.
     """
     p, kind = parameters
-    apart = "" if p == "p" else ", with an underscore beside the model's own p"
+    apart = "" if p == "p" else "; the underscore tells it from p, a name of the model"
     u = ", ".join(field.name for field in program.inputs)
     return [
         f"{plain(program.title or program.name)}: irreversible port-Hamiltonian system.",

@@ -36,7 +36,7 @@ LOOSE = "the domain may bound what drives the element, in a way that is not look
 #: Rows whose questions may be about parameters and inputs alone.
 DECLARED = frozenset({"welldef", "exergy", "environment"})
 #: The remedy where an integrated energy is not shown to belong to its law.
-GIVE = "the energy found for the law is not shown to be one: give it, energy = '...'"
+GIVE = "the law's energy that was found could not be verified: give it, energy = '...'"
 #: Open questions of an obligation after which no more are asked.
 MOST_OPEN = 4
 

@@ -153,8 +153,8 @@ def smt2(report: Report, made: str) -> str:
     lines = [
         f"; {made}",
         f"; Claims on the laws of {report.model}.  Each query asserts the opposite of its claim:",
-        "; `unsat` proves it, for all real numbers in the domain.  Functions such as exp stand",
-        "; as symbols, of which some bounds are given.  Names have a question mark before them.",
+        "; `unsat` proves it, for all real numbers in the domain.  A function such as exp is",
+        "; a symbol with bounds on its values.  Names begin with a question mark.",
         *(
             f"; {row.id} of {row.element} is {row.verdict.value} by intervals"
             for row in by_intervals

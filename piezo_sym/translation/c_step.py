@@ -236,7 +236,7 @@ class _Step:
             label = known.slots["integrands"][int(key[1])].label
             more = put(spelled(value - known.means[label]), at)
             if not more.parts.isdisjoint(at):
-                raise NotShownError(f"{label} is not shown to be one")
+                raise NotShownError(f"{label} is not shown to be the mean of its function")
             rows[key] = value - more
             names[label] = names[label] + more
         self.file = replace(self.file, known=replace(known, names=names))

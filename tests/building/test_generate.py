@@ -71,13 +71,13 @@ def test_a_folder_that_cannot_be_made_is_named(model, tmp_path):
 def test_the_head_of_every_file_explains_what_it_uses(spec, p):
     """The equations, what proofs cover, and what functions call the parameters."""
     texts = [text for path, text in render(load(spec)).items() if "proofs" not in path]
-    assert "heat exchange with the surroundings aside" in texts[0]
+    assert "heat exchange with ambients not" in texts[0]
     for text in texts:
         head = text[:2000]
         assert "dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k" in head
         assert "rows of `piezo-sym verify`; what is PROVED holds for all states" in head
         assert re.search(rf"^[^\w\n]*{p} = \w", head, re.M)  # each file in its language's words
-        assert ("beside the model's own p" in head) == (p == "p_")
+        assert ("tells it from p" in head) == (p == "p_")
 
 
 def test_what_is_not_proved_is_not_written(unproved, tmp_path):

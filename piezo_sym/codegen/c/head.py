@@ -19,7 +19,7 @@ FUNCTIONS = {
     "states": "Number of states n",
     "processes": "Number of processes, which produce entropy; of a bank, one per lane",
     "jacobian": "Jacobian of rhs, n x n, row after row: d rhs[i]/d x[j] at out[i*n + j]",
-    "margins": "Margin by which conditions of the domain hold; of a bank, the least of its lanes",
+    "margins": "Margin by which each condition of the domain holds; of a bank, the least one",
 }
 _ORDER = (
     "states processes initial_state rhs jacobian outputs supply energy entropy temperatures heat "

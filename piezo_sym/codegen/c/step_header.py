@@ -94,9 +94,9 @@ def _doc(program: Program, step: Collocation) -> Iterator[str]:
     yield from wrapped(
         "Takes a step of order two: energy-preserving Gauss collocation of one stage, by Newton's "
         "method. The booked energies and entropies close both balances to round-off. Returns 1 if "
-        "the step was taken. Returns 0, with x unchanged, if no such step in the domain was "
-        "found: a shorter one may exist. Most steps take two or three iterations, the hardest some "
-        "thousand."
+        "the step was taken. Returns 0, and leaves x unchanged, if no step that stays in the "
+        "domain was found: a shorter one may exist. Most steps take two or three iterations, the "
+        "hardest some thousand."
     )
     states = ", ".join(f"{field.spread} [{field.unit}]" for field in program.states)
     inputs = ", ".join(f"{field.name} [{field.unit}]" for field in program.inputs)

@@ -122,7 +122,7 @@ def literal(text: str) -> str:
 
 
 def _tables(program: Program) -> Iterable[str]:
-    yield "# rows of x, and of u with their values where nothing else is said"
+    yield "# rows of x; rows of u, and their default values"
     yield from _records("STATES", program.states)
     yield from _records("INPUTS", program.inputs)
     defaults = [str(program.defaults[field.name]) for field in program.inputs]

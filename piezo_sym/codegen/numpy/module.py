@@ -103,7 +103,7 @@ class _Printer:
     def margins(self) -> str:
         """Return the function of the margins, by which the conditions of the domain hold."""
         limits = self.program.limits
-        doc = "Margin by which conditions of DOMAIN hold; of a bank, the least of its lanes"
+        doc = "Margin by which each condition of DOMAIN holds; of a bank, the least one"
         doc += "; shape (len(DOMAIN), *batch)"
         roots = [limit.margin for limit in limits]
         lines = self._opening("margins", ("x", "u", "p"), doc, None, roots)
