@@ -10,8 +10,9 @@ At a zero, heat and cooling of a period balance: it is a periodic steady state. 
 separation of time scales.  Where the drift is the slowest motion, its sign is the direction of the
 temperature between zeros, and its slope at a zero says whether that state is stable.
 
-Conserved quantities, such as the difference in length of parallel springs, keep their values; so do
-motions that neither grow nor decay, such as a current that circulates in a dead zone.
+What is conserved keeps its value: linear functions of the state, such as the difference in length
+of parallel springs, and what a period near the state conserves, such as a current that circulates
+in a dead zone, or the slip of a stop that sticks.
 """
 
 import warnings
@@ -37,6 +38,7 @@ MOST_GROWTH = 2.0  # of the error in one iteration
 SHORTER = 0.25  # the next step, over one that failed
 LONGEST = 2.0  # step of an iteration, in sizes of the states
 NEUTRAL = 1e-7  # singular values below belong to motions that neither grow nor decay
+SHARE = 1e-3  # of a unit row, that the other conserved functions do not explain
 MOST_ITERATIONS = 12
 HOTTEST = 20.0  # upper end of the range, over the temperature at the start, if none is given
 FIRST_RISE = 1e-4  # the first step of a scan, over its coldest temperature
@@ -108,11 +110,19 @@ def jacobian(
 
 
 def _solved(matrix: FloatArray, right: FloatArray, conserved: FloatArray) -> FloatArray:
-    """Return the smallest y with matrix y = right, up to neutral motions, and conserved y = 0."""
+    """Return the y (n,) with matrix y = right, dP/dx - 1 of rows, and conserved y = 0.
+
+    A row w with w (dP/dx - 1) = 0 is a function that is conserved near the state, such as the
+    difference of the coordinates of a spring and of a stop that does not slip: w y = 0, too.
+    """
     if not right.size:
         return right
-    matrix = np.vstack([matrix, unit_rows(conserved)])
-    right = np.append(right, np.zeros(len(conserved)))
+    left, values, _ = np.linalg.svd(matrix)
+    kept, neutral = unit_rows(conserved), left[:, values <= NEUTRAL * values[0]].T
+    _, sizes, others = np.linalg.svd(neutral - neutral @ kept.T @ kept, full_matrices=False)
+    kept = np.vstack([kept, others[sizes > SHARE]])
+    matrix = np.vstack([matrix, kept])
+    right = np.append(right, np.zeros(len(kept)))
     return np.asarray(np.linalg.lstsq(matrix, right, rcond=NEUTRAL)[0], dtype=float)
 
 

@@ -457,6 +457,71 @@ def test_what_every_motion_conserves_stays_as_it_was(start):
     assert run.x[-1] == pytest.approx(found.initial["x"], abs=1e-7)
 
 
+STICKING = """
+[model]
+name = "sticking"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+k = { value = 1e4, unit = "N/m" }
+d = { value = 50.0, unit = "N*s/m" }
+k_s = { value = 5e3, unit = "N/m" }
+F_s = { value = 1e3, unit = "N" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 0.5, unit = "J/K" }
+h = { value = 0.5, unit = "W/K" }
+[inputs]
+F = { unit = "N" }
+T_e = { unit = "K", default = 300.0 }
+[domain]
+assume = ["d >= 0", "h >= 0", "T_e > 0"]
+[elements]
+mass = { kind = "mass", at = "tip", mass = "m", state = "p" }
+spring = { kind = "spring", between = ["tip", "wall"], stiffness = "k", state = "q" }
+damper = { kind = "damper", between = ["tip", "wall"], force = "d*v", heats = "body" }
+push = { kind = "force_source", at = "tip", input = "F" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+air = { kind = "ambient", body = "body", conductance = "h", input = "T_e" }
+[elements.slip]
+kind = "stop"
+between = ["tip", "wall"]
+stiffness = "k_s"
+limit = "F_s"
+heats = "body"
+state = "z"
+"""
+
+
+@pytest.mark.usefixtures("cache")
+@pytest.mark.parametrize("start", [{}, {"q": 0.01}, {"z": -0.005}])
+def test_a_stop_that_sticks_keeps_its_slip(start):
+    """The closed form of a linear oscillator: q - z stays, and k q + k_s z is its force."""
+    offset, amplitude, omega = 200.0, 100.0, 2 * np.pi * 5
+    drive = {"F": sine(amplitude, 5, offset)}
+    found = periodic_steady_state(parse(STICKING), inputs=drive, frequency=5, initial=start)
+    slip = start.get("q", 0.0) - start.get("z", 0.0)
+    response = amplitude / (1.5e4 - omega**2 + 50j * omega)
+    q = (offset + 5e3 * slip) / 1.5e4 + response.imag
+    assert found.initial["q"] == pytest.approx(q, rel=1e-6)
+    assert found.initial["z"] == pytest.approx(q - slip, rel=1e-6)
+
+
+@pytest.mark.usefixtures("cache")
+@pytest.mark.parametrize(("start", "phase"), [(0.0, 0.0), (3.0, 1.0)])
+def test_a_free_position_is_where_the_start_and_the_drive_put_it(start, phase):
+    """m v' + d v = F: p + d x changes by the impulse of F, which a period does not change."""
+    text = STICKING[: STICKING.index("[elements.slip]")]
+    text = text.replace('stiffness = "k"', 'force = "k*deadzone(q, 100*q_0)"')
+    text = text.replace("F_s = {", 'q_0 = { value = 1.0, unit = "m" }\nF_s = {')
+    model = parse(text)
+    m, d, amplitude, omega = 1.0, 50.0, 20.0, 2 * np.pi * 5
+    drive = {"F": sine(amplitude, 5, 0.0, phase)}
+    found = periodic_steady_state(model, inputs=drive, frequency=5, initial={"q": start})
+    v = amplitude * np.exp(1j * phase) / (d + 1j * omega * m)
+    x = start - m * v.imag / d
+    assert found.initial["p"] == pytest.approx(m * v.imag, rel=1e-6)
+    assert found.initial["q"] == pytest.approx(x, rel=1e-6)
+
+
 @pytest.mark.parametrize("pair", [False, True])
 @pytest.mark.parametrize("many", [4, 9, 13])
 def test_only_what_is_surely_conserved_counts(many, pair):
