@@ -21,7 +21,7 @@ from piezo_sym.run.engine.engine import Engine, engine_of
 from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.module import UNPROVED, GeneratedModule, row_count, verdict_of
-from piezo_sym.run.system import DrivenModule
+from piezo_sym.run.system import QUIET, DrivenModule
 
 METHOD = "discrete_gradient"
 #: Called with the time [s] that runs have reached, every few milliseconds; an exception ends them.
@@ -43,6 +43,8 @@ MOST_STEPS = 1e12
 ORDERS = (2, 4, 6, 8, 10)
 #: A step that ends closer than this, over its length, to a sample or a break ends there.
 ROUNDING = 1e-9
+#: The least error that is estimated, over the noise of a state at rest.
+OVER_NOISE = 50.0
 
 
 @final
@@ -126,6 +128,10 @@ def collocate(
         elif not how.fixed:
             batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
             batch.largest[:] = first.scale(batch.largest)
+            for n in np.flatnonzero(np.any(batch.largest < QUIET, axis=1)).tolist():
+                batch.noise[n] = systems[n].noise(x[n])
+            least = first.scale(OVER_NOISE * batch.noise / how.tolerance)
+            batch.largest[:] = np.maximum(batch.largest, least)
         advance(batch, watch)
     except KeyboardInterrupt as stopped:
         vars(stopped)["reached"] = results_of(batch, systems, x, times).so_far(0).until(times)

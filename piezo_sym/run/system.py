@@ -15,6 +15,10 @@ from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.module import GeneratedModule, Record, heat_exchanges, held, rows
 
 FLOOR = 1e-15  # so that no tolerance is 0
+#: Magnitudes of states that are at rest but for round-off; and round-off of temperatures, relative.
+QUIET, ROUND_OFF = 1e-12, 2e-16
+CHAIN = 3  # the most states from a temperature to one that its round-off moves
+MOST_QUIET = 300  # states of a model: the Jacobian of one with more takes too long
 
 
 @final
@@ -36,6 +40,27 @@ class DrivenModule:
         for row in self.rows(self.module.STATES):
             scale[..., row] = np.max(scale[..., row], axis=-1, keepdims=True)
         return scale
+
+    def noise(self, x: FloatArray) -> FloatArray:
+        """Return how far round-off of temperatures moves each state (n,) near the state x (n,).
+
+        At rest a state is nothing else: no step resolves it. A rate's round-off moves the state for
+        about as long as the state's own motion takes, or its exchange with another state.
+        """
+        if x.size > MOST_QUIET:
+            return np.zeros(x.size)
+        u = self.inputs.segments[0].at(self.inputs.start)
+        with np.errstate(all="ignore"):
+            slope = np.abs(self.module.jacobian(x, u, self.parameters))
+            step = 1e-6 * np.maximum(np.abs(x), 1.0)
+            T = self.module.temperatures(x, self.parameters)[:, None]
+            rise = np.abs(self.module.temperatures(x[:, None] + np.diag(step), self.parameters) - T)
+            sizes = np.nan_to_num(np.min(T * step / rise, axis=0, initial=np.inf), posinf=0.0)
+            pace = np.max(np.sqrt(slope * slope.T), axis=1)
+            for _ in range(CHAIN):
+                moved = (slope - np.diag(np.diag(slope))) @ sizes / pace
+                sizes = np.maximum(sizes, np.nan_to_num(moved, posinf=0.0))
+        return np.asarray(ROUND_OFF * sizes)
 
     def field(self, segment: Segment) -> Callable[[float, FloatArray], FloatArray]:
         """Return dx/dt (n,) as a function of t and x in one segment."""

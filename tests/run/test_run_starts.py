@@ -259,3 +259,14 @@ def test_nor_does_a_charge_whose_source_stops_in_vectors():
     feed, springs = {"I": step(0.03, 1e-3, 0.0)}, {"k": np.linspace(0.5, 20, 64)}
     found = sweep(parse(SLIP), over=springs, inputs=feed, duration=0.2, step=0.01)
     assert np.all(np.abs(found.energy_residual) <= 1e-14 * found.energy.max("time"))
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-9])
+@pytest.mark.parametrize("duration", [0.5, 10.0, 1e4])
+def test_a_model_at_rest_is_not_resolved_below_round_off(duration, rtol):
+    """The Seebeck voltages of 15 V cancel but for 1 ulp, and the temperatures change by 1 ulp."""
+    run = simulate("peltier_cooler", duration=duration, rtol=rtol, times=11)
+    assert run.attrs["accepted_steps"] < 200
+    assert np.abs(run.phi).max() < 1e-3 * 15.0 / 2.0 * 1e-12  # L I, with I = 1e-12 of V/R
+    assert max(np.abs(run.S_c).max(), np.abs(run.S_h).max()) < 1e-12 * 200.0
+    assert np.abs(run.energy_residual).max() < 1e-12 * float(run.energy[0])

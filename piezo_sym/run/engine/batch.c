@@ -111,6 +111,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     for (long k = 0; k < m->n; ++k) {
         LANE(m->x, k, lane) = run->x[k];
         LANE(m->largest, k, lane) = run->largest[k];
+        LANE(m->noise, k, lane) = run->noise[k];
     }
     for (long k = 0; k < m->booked; ++k) {
         LANE(b->sums, k, lane) = run->ledger[k];

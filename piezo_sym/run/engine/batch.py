@@ -76,6 +76,7 @@ class Batch:
     ----------
     x : the current states (runs, n), at first those at t = 0.
     largest : the largest magnitude of each state (runs, n).
+    noise : how far round-off moves each state at rest (runs, n), or 0.
     ledgers : the ledger so far, and its rounding error (runs, 2, rows).
     states, sums : at samples, (runs, samples, n) and (runs, samples, rows), rows in the order of
         `DrivenModule.rates`, then `extra`: 2 for heat and entropy of dissipative steps; nan at
@@ -100,6 +101,7 @@ class Batch:
         self._engine, self._layout, self.extra = engine, layout, extra
         self._structures = engine.structure.many(parameters)
         self.x, self.largest = np.array(x, dtype=float), np.abs(x)
+        self.noise = np.zeros(self.x.shape)
         self.inputs = InputRecords(inputs)
         self._times = np.ascontiguousarray(times, dtype=float)
         count, n = self.x.shape
@@ -112,7 +114,7 @@ class Batch:
         self.states = np.full((count, times.size, n), np.nan)
         self.sums = np.full((count, times.size, rows), np.nan)
         self.ledgers = np.zeros((count, 2, rows))
-        for name in ("x", "largest", "states", "sums"):
+        for name in ("x", "largest", "noise", "states", "sums"):
             self.records[name] = addresses(getattr(self, name))
         self.records["ledger"] = addresses(self.ledgers)
         self.go_on(stepping, inputs.end)

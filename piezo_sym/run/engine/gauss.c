@@ -69,6 +69,7 @@ typedef struct {
     real *branch;              /* STAGES*branches */
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: largest magnitude of each state, the scale of its errors */
+    real *noise;               /* n: how far round-off moves a state that is at rest; else 0 */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
 #if defined(PATHS)
     long drives;
@@ -188,6 +189,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(branch, STAGES * m->branches);
     PLACE(u, STAGES * m->inputs);
     PLACE(largest, n);
+    PLACE(noise, n);
     PLACE(reached, n);
     PLACE(gap, STAGES * n);
     PLACE(prior, STAGES * n);

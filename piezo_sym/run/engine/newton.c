@@ -215,7 +215,7 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
             moved = largest_of(moved, size_of(rate));
             sum += size_of(change);
         }
-        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + NO_SIZE;
+        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + m->noise[k] + NO_SIZE;
         const real noises = h * sum / size;
         worst = chosen(noises > worst, noises, worst);
         lost += 0.0 * noises;

@@ -33,6 +33,7 @@ typedef struct {
     const MODEL(segment) *segments;  /* from the one that t lies in */
     double *x;                       /* n: at t */
     double *largest;                 /* n: the largest magnitude of each state */
+    const double *noise;             /* n: how far round-off moves each state at rest; else 0 */
     double *ledger;                  /* (2, booked): sums until t, and what rounding lost of them */
     double *states, *sums;           /* (samples, n), (samples, booked) */
     double t;
