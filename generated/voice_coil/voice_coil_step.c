@@ -442,6 +442,7 @@ typedef struct {
     real *branch;              /* STAGES*branches */
     real *u;                   /* STAGES*inputs */
     real *largest;             /* n: largest magnitude of each state, the scale of its errors */
+    real *noise;               /* n: how far round-off moves a state that is at rest; else 0 */
     real *reached, *gap, *prior, *node, *mean, *side, *margin, *rows, *slope, *fresh, *real_factor;
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes that step over kinks: each stage chooses its branches */
@@ -683,6 +684,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(branch, STAGES * m->branches);
     PLACE(u, STAGES * m->inputs);
     PLACE(largest, n);
+    PLACE(noise, n);
     PLACE(reached, n);
     PLACE(gap, STAGES * n);
     PLACE(prior, STAGES * n);
@@ -1005,7 +1007,7 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
             moved = largest_of(moved, size_of(rate));
             sum += size_of(change);
         }
-        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + NO_SIZE;
+        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + m->noise[k] + NO_SIZE;
         const real noises = h * sum / size;
         worst = chosen(noises > worst, noises, worst);
         lost += 0.0 * noises;
