@@ -1,6 +1,6 @@
 """Random networks: specs as plain data, over every kind of element.
 
-Output: a Hypothesis strategy `networks`, and `explore`, which checks many.  A network has a tree
+Output: `network`, which draws one, and `explore`, which checks many.  A network has a tree
 of elements that give the across variable of each node (capacitor, mass, source, resistor), and
 chords that give their through variable (inductor, spring, hysteron, damper); that is a network with
 one solution.  Then a few elements are put anywhere, and most such networks have none, or need a law
@@ -8,15 +8,13 @@ the other way round, or stores that depend on others are to be joined.
 """
 
 from dataclasses import dataclass, field
+from random import Random
 
-from hypothesis import HealthCheck, given, reject, seed, settings
-from hypothesis import strategies as st
 from kinds import KINDS
 from network_tableau import NODES, entropy_of, state
 
 from piezo_sym import Model, PiezoError, derive
 
-CHANCE = st.integers(0, 99)
 REFERENCE = {"e": "gnd", "m": "wall", "r": "frame", "h": "tank"}
 DISSIPATIVE = {"e": "resistor", "m": "damper", "r": "rotational_damper", "h": "orifice"}
 CHORDS = {"e": "inductor", "m": "spring", "r": "torsion_spring", "h": "inertance"}
@@ -48,7 +46,7 @@ class Draft:
     it is to depend on others.
     """
 
-    draw: object
+    rng: Random
     nodes: dict = field(default_factory=lambda: {d: [node] for d, node in REFERENCE.items()})
     parameters: dict = field(default_factory=dict)
     inputs: dict = field(default_factory=dict)
@@ -65,11 +63,19 @@ class Draft:
 
     def one_in(self, number):
         """Return whether a rare thing happens."""
-        return self.draw(CHANCE) >= 100 - 100 // number
+        return self.rng.randrange(100) < 100 // number
 
     def pick(self, items):
         """Return one of some things."""
-        return self.draw(st.sampled_from(list(items)))
+        return self.rng.choice(list(items))
+
+    def some(self, low, high):
+        """Return a whole number from one to another."""
+        return self.rng.randint(low, high)
+
+    def mixed(self, items):
+        """Return some things in any order."""
+        return self.rng.sample(items, len(items))
 
     def parameter(self, letter, unit, low=0.5, high=4.0):
         """Return a parameter: new, a list of values for lanes, or one of another element."""
@@ -78,9 +84,9 @@ class Draft:
         if shared and self.one_in(8):
             return self.pick(shared)
         step, odd = (high - low) / 1000, 3.71e-4  # no ratio is 1: generic networks are meant
-        numbers = st.integers(0, 1000).map(lambda n: round(low + step * n + odd, 7))
         listed = self.lanes is not None and self.one_in(2)
-        drawn = [self.draw(numbers) for _ in range(self.lanes or 1)]
+        numbers = (low + step * self.some(0, 1000) + odd for _ in range(self.lanes or 1))
+        drawn = [round(number, 7) for number in numbers]
         drawn = drawn if listed else drawn[0]
         self.parameters[name] = {"value": drawn, "unit": unit}
         return name
@@ -134,7 +140,7 @@ class Draft:
     def state(self):
         """Return the symbol of a state, if it has one of its own."""
         if self.words and self.one_in(6):
-            return {"state": self.words.pop(self.draw(st.integers(0, len(self.words) - 1)))}
+            return {"state": self.words.pop(self.some(0, len(self.words) - 1))}
         return {}
 
     def add(self, kind, role, ends=(), cell=None):
@@ -155,7 +161,7 @@ class Draft:
 
 
 def _bodies(draft):
-    for _ in range(draft.draw(st.integers(1, 3))):
+    for _ in range(draft.some(1, 3)):
         draft.add("thermal_mass", "chord")
 
 
@@ -167,7 +173,7 @@ def _tree(draft, domain, count):
         if KINDS[kind].form == "coupling" and not draft.can_couple(kind, domain):
             kind = DISSIPATIVE[domain]
         other = REFERENCE[domain] if KINDS[kind].nodes == ("at",) else draft.pick(earlier)
-        ends = draft.draw(st.permutations([node, other]))
+        ends = draft.mixed([node, other])
         draft.add(kind, "tree", (domain, ends))
         draft.nodes[domain] = [*earlier, node]
 
@@ -178,7 +184,7 @@ def _chords(draft):
         for node in draft.nodes[domain][1:]:
             others = [n for n in draft.nodes[domain] if n != node]
             if _uses(draft, node) < 2 or draft.one_in(3):
-                _chord(draft, domain, draft.draw(st.permutations([node, draft.pick(others)])))
+                _chord(draft, domain, draft.mixed([node, draft.pick(others)]))
 
 
 def _chord(draft, domain, ends):
@@ -203,7 +209,7 @@ def _uses(draft, node):
 
 
 def _heat(draft):
-    for _ in range(draft.draw(st.integers(0, 2))):
+    for _ in range(draft.some(0, 2)):
         kind = draft.pick(HEAT)
         if kind != "conduction" or len(draft.bodies) > 1:
             draft.add(kind, "chord")
@@ -230,13 +236,13 @@ def _cells(draft):
     for role, kinds in (("tree", TREE), ("chord", CHORD), ("chord", CHORD))[: draft.pick((2, 3))]:
         kind = draft.pick([kind for kind in kinds[domain] if KINDS[kind].form in LANED])
         other = REFERENCE[domain] if KINDS[kind].nodes == ("at",) else draft.pick(there)
-        draft.add(kind, role, (domain, draft.draw(st.permutations([inside, other]))), cell)
+        draft.add(kind, role, (domain, draft.mixed([inside, other])), cell)
 
 
 def _chain(draft, domain, cell, inside):
     """Put cells in series between a new node and another, and a chord that drives them."""
     node, other = f"{cell['bank']}.end", draft.pick(draft.nodes[domain])
-    cell["series"] = draft.draw(st.permutations([node, other]))
+    cell["series"] = draft.mixed([node, other])
     places = (
         ("tree", node, inside),
         ("tree", inside, other),
@@ -245,7 +251,7 @@ def _chain(draft, domain, cell, inside):
     for role, *ends in places[: draft.pick((2, 3))]:
         kinds = TREE[domain] if role == "tree" else CHORD[domain]
         fit = [k for k in kinds if KINDS[k].form in LANED and KINDS[k].nodes != ("at",)]
-        draft.add(draft.pick(fit), role, (domain, draft.draw(st.permutations(ends))), cell)
+        draft.add(draft.pick(fit), role, (domain, draft.mixed(ends)), cell)
     draft.nodes[domain] = [*draft.nodes[domain], node]
     draft.add(CHORDS[domain], "chord", (domain, [node, draft.pick(draft.nodes[domain][:-1])]))
 
@@ -253,7 +259,7 @@ def _chain(draft, domain, cell, inside):
 def _tied(draft):
     """Put stores whose co-states depend on others': two in series or in parallel, or on levers."""
     there = sorted(domain for domain, nodes in draft.nodes.items() if len(nodes) > 1)
-    for n in range(draft.draw(st.integers(1, 2))):
+    for n in range(draft.some(1, 2)):
         domain, node = draft.pick(there), f"tied{n}"
         springs, held = _inside(domain, "store", False), _inside(domain, "store", True)
         ways = [(springs, springs), (held, held, springs)]
@@ -264,7 +270,7 @@ def _tied(draft):
             kind = draft.pick(kinds)
             other = shared if kinds is held else draft.pick(draft.nodes[domain])
             other = REFERENCE[domain] if KINDS[kind].nodes == ("at",) else other
-            draft.add(kind, "tied", (domain, draft.draw(st.permutations([node, other]))))
+            draft.add(kind, "tied", (domain, draft.mixed([node, other])))
         draft.nodes[domain] = [*draft.nodes[domain], node]
 
 
@@ -286,10 +292,9 @@ def _adrift(elements):
     }
 
 
-@st.composite
-def networks(draw):
+def network(rng):
     """Draw a spec as plain data: the argument of `Model`, and what TOML text holds."""
-    draft = Draft(draw)
+    draft = Draft(rng)
     draft.linear = draft.one_in(3)
     _bodies(draft)
     domains = draft.pick(TOGETHER)
@@ -304,7 +309,7 @@ def networks(draw):
         _anywhere(draft)
     if draft.one_in(5):
         _tied(draft)
-    order = draw(st.permutations(list(draft.elements)))
+    order = draft.mixed(list(draft.elements))
     if draft.one_in(15):  # what holds a node may be missing, or a body
         order = order[1:]
     if draft.one_in(25):
@@ -323,20 +328,35 @@ def networks(draw):
     }
 
 
-def explore(number, check):
+class Rejected(Exception):
+    """A check has nothing to say of a network."""
+
+
+def assume(condition):
+    """Reject a network unless a condition holds."""
+    if not condition:
+        raise Rejected
+
+
+def explore(number, check, part=0):
     """Return what `check(spec, seed)` gave for each of a number of random networks.
 
-    Each check has networks of its own, the same in every run; those that it rejects do not count.
+    Each check, and each part of one, has networks of its own, the same in every run; those that it
+    rejects do not count.
     """
     outcomes = []
-
-    @seed(check.__module__)
-    @settings(max_examples=number, suppress_health_check=list(HealthCheck), database=None)
-    @given(networks(), st.integers(0, 10**6))
-    def each(spec, number):
-        outcomes.append(check(spec, number))
-
-    each()
+    for n in range(20 * number):
+        rng = Random(f"{check.__module__} {part} {n}")
+        spec = network(rng)
+        try:
+            outcomes.append(check(spec, rng.randrange(10**6)))
+        except Rejected:
+            continue
+        except Exception as error:
+            error.add_note(f"network {n} of part {part} of {check.__module__}: {spec}")
+            raise
+        if len(outcomes) == number:
+            break
     return outcomes
 
 
@@ -345,4 +365,4 @@ def derivable(spec):
     try:
         return derive(Model(**spec))
     except PiezoError:
-        reject()
+        raise Rejected from None

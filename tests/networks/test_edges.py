@@ -11,10 +11,9 @@ import pytest
 import sympy as sp
 from agreement import close, explicit, values_of
 from edges import ABOVE, edges, heated, on_edges, rounded
-from hypothesis import assume
 from precise import DIGITS
 from runs import jumps
-from strategy import derivable, explore
+from strategy import assume, derivable, explore
 from test_c_networks import check_twins, twin, twins
 
 from piezo_sym import derive, load

@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from agreement import point
-from hypothesis import assume
 from network_tableau import state
 from runs import METHOD, check_run, distance, jumps, written
-from strategy import derivable, explore
+from strategy import assume, derivable, explore
 
 from piezo_sym import Model, load, sine
 from piezo_sym.errors import RunError

@@ -76,15 +76,17 @@ def test_every_kind_has_a_strategy():
     assert set(KINDS) == set(elements.KINDS)
 
 
-def test_what_is_drawn():
-    check_seen(explore(100, features), missing=12)
+@pytest.mark.parametrize(
+    ("number", "missing"), [(100, 12), pytest.param(2000, 0, marks=pytest.mark.long)]
+)
+def test_what_is_drawn(number, missing):
+    check_seen(explore(number, features), missing=missing)
 
 
-def test_networks():
-    derived = [found for found in explore(8, checked) if found]
-    assert len(derived) >= 3  # what is refused, and how often, is seen among those above
+PARTS = [n if n < 4 else pytest.param(n, marks=pytest.mark.long) for n in range(134)]
 
 
-@pytest.mark.long
-def test_many_networks():
-    check_seen(explore(2000, checked), missing=0)
+@pytest.mark.parametrize("part", PARTS)
+def test_networks(part):
+    derived = [found for found in explore(15, checked, part) if found]
+    assert len(derived) >= 3  # what is refused, and how often, is seen among those drawn
