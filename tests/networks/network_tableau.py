@@ -213,7 +213,7 @@ class Tableau:
         _, costate = self.costates[store]
         slopes = np.diff([costate(x) for x in (-2.0, -1.0, 0.0, 1.0, 2.0)])
         _, element = self._element(self.branches[store].element)
-        return bool(np.ptp(slopes) <= CLOSE * abs(slopes).max()) and "count" not in element
+        return bool(np.ptp(slopes) <= SINGULAR * abs(slopes).max()) and "count" not in element
 
     def _give(self):
         """Give all co-states: of those that are tied, what the joined states say."""
@@ -470,7 +470,11 @@ def _slope(branch, z):
     linear = _linear_slope(branch)
     if branch.law is None or linear is not None:
         return linear or 0.0
-    return (branch.law(z + SLOPE_STEP) - branch.law(z - SLOPE_STEP)) / (2 * SLOPE_STEP)
+    wide, narrow = (
+        (branch.law(z + step) - branch.law(z - step)) / (2 * step)
+        for step in (SLOPE_STEP, SLOPE_STEP / 2)
+    )
+    return wide if abs(narrow) <= 1.5 * abs(wide) else 0.0  # at a jump: what it gives is given
 
 
 def _rank(matrix):

@@ -3,7 +3,7 @@
 import ast
 
 import pytest
-from agreement import DERIVED, check
+from agreement import DERIVED, check, check_laws
 from kinds import KINDS
 from network_tableau import entropy_of, state
 from strategy import explore
@@ -58,11 +58,6 @@ def features(spec, _):
     }
 
 
-def checked(spec, seed):
-    """Check a network, and return its features."""
-    return features(spec, seed) if check(spec, seed) == DERIVED else set()
-
-
 def check_seen(outcomes, *, missing):
     """Check that both outcomes are frequent, and that what derives is not only what is simple."""
     found, refused = set().union(*outcomes), outcomes.count(set())
@@ -83,10 +78,21 @@ def test_what_is_drawn(number, missing):
     check_seen(explore(number, features), missing=missing)
 
 
-PARTS = [n if n < 4 else pytest.param(n, marks=pytest.mark.long) for n in range(134)]
+#: Parts of 25 networks; all 80 in the long tier.
+LAWS = [n if n < 8 else pytest.param(n, marks=pytest.mark.long) for n in range(80)]
+PARTS = [n if n < 1 else pytest.param(n, marks=pytest.mark.long) for n in range(80)]
+
+
+def check_part(number, check, part):
+    """Check a part of the networks; what is refused, and how often, is seen among those drawn."""
+    assert explore(number, check, part).count(DERIVED) >= number / 5
+
+
+@pytest.mark.parametrize("part", LAWS)
+def test_laws_of_networks(part):
+    check_part(25, check_laws, part)
 
 
 @pytest.mark.parametrize("part", PARTS)
 def test_networks(part):
-    derived = [found for found in explore(15, checked, part) if found]
-    assert len(derived) >= 3  # what is refused, and how often, is seen among those drawn
+    check_part(25 if part else 12, check, part)
