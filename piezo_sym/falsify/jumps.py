@@ -26,9 +26,9 @@ JUMP = 1e-6
 #: Number of kinks with a larger change that are evaluated exactly.
 MOST_CHECKED = 6
 #: A difference that has shrunk to this part of the largest is no jump.
-FADED = Fraction(1, 10**6)
+FADED = fmpq(1, 10**6)
 #: Relative distances of the two sides; part of the difference at the first left at the second.
-NEAR, NEARER, SAME = Fraction(1, 10**40), Fraction(1, 10**80), Fraction(9, 10)
+NEAR, NEARER, SAME = Fraction(1, 10**40), Fraction(1, 10**80), fmpq(9, 10)
 #: Relative error of a kink found in floating point.
 WIDER = (Fraction(0), Fraction(1, 10**15), Fraction(1, 10**12))
 Values = list[Any]
@@ -99,7 +99,9 @@ def _confirmed(
 
     for wider in WIDER:
         off = wider * max(abs(near), abs(far)) * (1 if far > near else -1)
-        if _gap(values_at(near - off), values_at(far + off)) > Fraction(leap) / 10:
+        with ctx.workprec(BITS):
+            if not _gap(values_at(near - off), values_at(far + off)) > exactly(leap) / 10:
+                continue
             found = _narrowed(values_at, near - off, far + off)
             if not found or not all(there(side).inside for side in found[1]):
                 return None
@@ -109,7 +111,7 @@ def _confirmed(
 
 def _narrowed(
     values_at: Callable[[Fraction], Values], low: Fraction, high: Fraction
-) -> tuple[Fraction, tuple[Fraction, Fraction]] | None:
+) -> tuple[Any, tuple[Fraction, Fraction]] | None:
     """Return the difference on two approaching sides, and the sides; None if it fades."""
     scale, gaps = max(abs(low), abs(high)), []
     one, other = values_at(low), values_at(high)
@@ -141,19 +143,18 @@ def _watched(claim: Claim, at: Point) -> list[Any]:
     return at.values(own[:1] or [r for n, r in at.probe.defined.items() if n.startswith("rate ")])
 
 
-def _gap(one: Values, other: Values) -> Fraction:
+def _gap(one: Values, other: Values) -> Any:
     """Return a lower bound on the largest difference of two vectors; 0 if one is not known."""
     if not one or not other:
-        return Fraction(0)
-    with ctx.workprec(BITS):
-        return max(_least(a - b) for a, b in zip(one, other, strict=True))
+        return fmpq(0)
+    return max(_least(a - b) for a, b in zip(one, other, strict=True))
 
 
-def _least(gap: Any) -> Fraction:
-    """Return the least absolute value in an enclosure."""
+def _least(gap: Any) -> Any:
+    """Return the least absolute value in an enclosure, as a number of FLINT's.
+
+    A rate beside the kink may be 2**(10**13): that many bits are in no rational.
+    """
     if isinstance(gap, fmpq):
-        return Fraction(int(abs(gap).p), int(gap.q))
-    if not gap.is_finite():
-        return Fraction(0)
-    mantissa, exponent = gap.abs_lower().man_exp()
-    return int(mantissa) * Fraction(2) ** int(exponent)
+        return abs(gap)
+    return gap.abs_lower() if gap.is_finite() else fmpq(0)
