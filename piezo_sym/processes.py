@@ -40,6 +40,7 @@ class Worker:
     def __init__(self, *arguments: str, group: bool = False) -> None:
         self.arguments, self.group = arguments, group
         self.process: subprocess.Popen[bytes] | None = None
+        self.status: int | None = None  # with which the last one ended
         self._lock = threading.Lock()
         _workers.add(self)
         atexit.register(self.close)
@@ -83,7 +84,7 @@ class Worker:
         if process is None:
             return
         self._kill(process)
-        process.wait()
+        self.status = process.wait()
         for pipe in (process.stdin, process.stdout):
             with suppress(OSError):  # of what was not sent
                 pipe and pipe.close()

@@ -114,20 +114,20 @@ def _quick_compiler(request, shared_folder):
 def known_reports(shared_folder):
     """Examine a model once for all modules of tests that say so: the answer is always the same."""
     from piezo_sym import Model
-    from piezo_sym.proofs import Report
     from piezo_sym.verification import process
+    from piezo_sym.verification.protocol import Progress
 
     folder, messages = shared_folder / "reports", process.messages
     folder.mkdir(exist_ok=True)
 
-    def known(worker, subject, seconds):
-        if not isinstance(subject, Model):
-            return messages(worker, subject, seconds)
-        path = folder / hashlib.sha256(repr(subject.model_dump()).encode()).hexdigest()
+    def known(worker, request):
+        if not isinstance(request.subject, Model) or request.late:
+            return messages(worker, request)
+        path = folder / hashlib.sha256(repr(request.subject.model_dump()).encode()).hexdigest()
         if path.is_file():
             return pickle.loads(path.read_bytes())
-        found = [*messages(worker, subject, seconds)]
-        if isinstance(found[-1], Report):
+        found = [*messages(worker, request)]
+        if isinstance(found[-1], Progress):
             made = path.with_suffix(f".{os.getpid()}")
             made.write_bytes(pickle.dumps(found))
             made.replace(path)

@@ -20,7 +20,7 @@ from piezo_sym.falsify.hunt import POINTS, Attack, Hunt
 from piezo_sym.falsify.probe import module_from
 from piezo_sym.iphs import IPHS
 
-__all__ = ["POINTS", "Attack", "falsify", "module_from"]
+__all__ = ["POINTS", "Attack", "Hunt", "falsify", "module_from"]
 
 
 def falsify(
@@ -45,4 +45,6 @@ def falsify(
     ContradictionError
         If a row is false at a point, confirmed by exact arithmetic.
     """
-    return Hunt(iphs, module, tuple(claims), points).attacks()
+    hunt = Hunt(iphs, module, rows := tuple(claims), points)
+    hunt.search()
+    return tuple(filter(None, map(hunt.attack, rows)))

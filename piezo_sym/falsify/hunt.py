@@ -113,28 +113,36 @@ class Hunt:
         sizes = {bank: getattr(spec, f"{bank}_count") for bank in module.BANKS}
         self.spec = Space(module, probe, sizes)
         self.space = Space(module, probe, dict.fromkeys(sizes, LANES))
-        found = (claim_of(probe, *row) for row in claims)
+        found = {row: claim_of(probe, *row) for row in claims}
         self.wanted = min(points, self.space.most)
-        self.tracks = [Track(claim) for claim in found if claim]
+        self._tracks = {row: Track(claim) for row, claim in found.items() if claim}
+        self.tracks = [*self._tracks.values()]
         trees = [condition.tree for condition in conditions(iphs.model)]
         self.conditioned = {name for tree in trees for name in names(tree)}
         most = min(MOST_LANES, max(sizes.values(), default=1))
         known = [self.space.own(lane) for lane in range(0, most, LANES)]
         self.draw = Draw(self.space, np.concatenate(known, axis=1))
 
-    def attacks(self) -> tuple[Attack, ...]:
-        """Return the result for each row.
+    def search(self) -> None:
+        """Evaluate all rows at all points."""
+        for kind, space, points in self._blocks():
+            for n in range(0, points.shape[1], space.block):
+                self._see(kind, space, points[:, n : n + space.block])
+
+    def attack(self, row: tuple[str, str]) -> Attack | None:
+        """Return the result for a row, after the search; None if it has no value at a point.
 
         Raises
         ------
         ContradictionError
-            If one is false.
+            If it is false.
         """
-        for kind, space, points in self._blocks():
-            for n in range(0, points.shape[1], space.block):
-                self._see(kind, space, points[:, n : n + space.block])
-        exact = Exact(self.space.probe)
-        return tuple(self._judged(track, exact) for track in self.tracks)
+        track = self._tracks.get(row)
+        return track and self._judged(track, self._exact)
+
+    @cached_property
+    def _exact(self) -> Exact:
+        return Exact(self.space.probe)
 
     def _see(self, kind: str, space: Space, points: Array) -> None:
         seen = space.at(points)

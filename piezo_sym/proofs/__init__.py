@@ -8,9 +8,11 @@ verdicts       Obligation -> Row         prove; sign_analysis and signs; witness
 report         rows -> Report            report, published
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import cached_property
 from itertools import groupby
+from typing import final
 
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import balances, bodies, laws
@@ -27,6 +29,7 @@ from piezo_sym.spec.elements.ports import Conductor
 
 __all__ = [
     "Obligation",
+    "Prover",
     "Report",
     "Row",
     "Verdict",
@@ -35,6 +38,7 @@ __all__ = [
     "proofs_json",
     "prove",
     "smt2",
+    "stated",
 ]
 
 
@@ -43,17 +47,52 @@ def decide(iphs: IPHS) -> Report:
 
     `piezo_sym.verify` asks for more before it calls a row PROVED: see `verification`.
     """
-    rows: list[Row] = []
-    by_name: dict[tuple[str, str], list[Row]] = {}
-    stated, solver = obligations(iphs), opinions()
-    empty = why_empty(iphs, assumptions_of(iphs), solver) if stated else ""
-    for obligation in stated:
-        asked = replace(obligation, open_because=empty) if empty else obligation
+    prover = Prover(iphs, report := stated(iphs))
+    for number in range(len(report.obligations)):
+        prover.decide(number)
+    return replace(report, rows=tuple(prover.rows))
+
+
+def stated(iphs: IPHS) -> Report:
+    """Return the report on a system in which only the rows on units are decided."""
+    own = obligations(iphs)
+    rows = [
+        Row(o.id, o.element, o.statement, Verdict.OPEN, required=o.required, method="") for o in own
+    ]
+    return Report(iphs.model.name, (*rows, *units(iphs)), own, published(iphs))
+
+
+@final
+class Prover:
+    """Decides the rows of a system, one at a time; what is not decided yet is OPEN in `rows`."""
+
+    def __init__(self, iphs: IPHS, report: Report) -> None:
+        self.iphs, self.obligations, self.rows = iphs, report.obligations, [*report.rows]
+        self._solver, self._named = opinions(), dict[tuple[str, str], list[int]]()
+        for number, o in enumerate(self.obligations):
+            self._named.setdefault((o.id, o.element), []).append(number)
+
+    def decide(self, number: int) -> Row:
+        """Return the verdict on an obligation, whose premises have been decided."""
+        asked = self.obligations[number]
+        asked = replace(asked, open_because=self._empty) if self._empty else asked
         premises = dict.fromkeys((*asked.rests_on, ("welldef", asked.element)))
-        before = [row for name in premises for row in by_name.get(name, ())]
-        rows.append(row := prove(asked, iphs, before, solver))
-        by_name.setdefault((row.id, row.element), []).append(row)
-    return Report(iphs.model.name, (*rows, *units(iphs)), stated, published(iphs))
+        before = [self.rows[n] for name in premises for n in self._named.get(name, ())]
+        self.rows[number] = prove(asked, self.iphs, before, self._solver)
+        return self.rows[number]
+
+    def resting(self, numbers: Iterable[int]) -> list[int]:
+        """Return some obligations and all that rest on them, each after its premises."""
+        found = {*numbers}
+        for number, o in enumerate(self.obligations):
+            if any(not found.isdisjoint(self._named.get(name, ())) for name in o.rests_on):
+                found.add(number)
+        return sorted(found)
+
+    @cached_property
+    def _empty(self) -> str:
+        """The reason to leave all open if the domain has no known point, else ''."""
+        return why_empty(self.iphs, assumptions_of(self.iphs), self._solver)
 
 
 def obligations(iphs: IPHS) -> tuple[Obligation, ...]:

@@ -43,6 +43,7 @@ class Row:
     method : what decided it: algebra, branches (queries), or intervals (the law as a whole).
     points : the number of points of the domain at which it was found true.
     certificate : for intervals, the data for a second program to check; see `signs`.
+    waits : whether it is open for want of time alone, which other rows have taken.
     """
 
     id: str
@@ -55,6 +56,12 @@ class Row:
     method: str = "algebra"
     points: int = 0
     certificate: tuple[Mapping[str, object], ...] = ()
+    waits: bool = False
+
+    @property
+    def name(self) -> str:
+        """The row in words, such as ``passive of damper``."""
+        return f"{self.id} of {self.element}" if self.element else self.id
 
     @property
     def why(self) -> str:
@@ -109,7 +116,7 @@ class Report:
         return not self.failures
 
     def raise_if_not_proved(self) -> None:
-        """Raise on the first required property that is refuted or open.
+        """Raise on the first required property that is refuted, or else open for its own reasons.
 
         Raises
         ------
@@ -117,7 +124,7 @@ class Report:
             Names the property, its witness or the reason why it is open.
         """
         if self.failures:
-            row = self.failures[0]
+            row = min(self.failures, key=lambda row: (row.verdict is Verdict.OPEN, row.waits))
             what = f"{row.id} is {row.verdict.value}"
             where = f"{self.model}.{row.element}" if row.element else self.model
             raise ProofError(

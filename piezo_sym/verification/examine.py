@@ -1,42 +1,50 @@
 """Everything that is examined of a system: proofs, printed modules, and attacks by numbers.
 
-Input: an `IPHS`.  Output: the texts of its module, then reports, each more complete than the one
-before; the last one is whole.
-A row is PROVED in the last one only if it was proved and no number contradicts it.
+Input: an `IPHS`.  Output: the texts of its module, its rows, and their verdicts one by one.
+A verdict is PROVED only if it was proved and no number contradicts it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
-from typing import Any
+from types import MappingProxyType
+from typing import Any, final
 
 from piezo_sym.codegen.template import template_of
-from piezo_sym.falsify import POINTS, Attack, falsify, module_from
+from piezo_sym.falsify import POINTS, Attack, Hunt, module_from
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs import Report, Row, Verdict, decide
+from piezo_sym.proofs import Prover, Report, Row, Verdict, stated
 from piezo_sym.spec.values import Template
 from piezo_sym.translation import program_row, worst
+from piezo_sym.translation.program import STATEMENT
+from piezo_sym.verification.protocol import Progress
+from piezo_sym.verification.record import Record
 
 #: Rows that say something at every point of the domain, and so can be attacked by numbers.
 ATTACKED = frozenset(
     {"passive", "temperature", "welldef", "continuous", "sigma", "exergy", "environment"}
     | {"invariant"}
 )
+#: Of the time that is left, a row may take this part before all others are decided.
+SHARE = 0.25
+PROGRAM = Row("program", "", STATEMENT, Verdict.OPEN)
 
 
 def examine(
     iphs: IPHS,
     points: int = POINTS,
     apart: Callable[[Iterator[Any]], AbstractContextManager[Iterator[Any]]] = nullcontext,
-) -> Iterator[Template | Report]:
-    """Yield the texts of a system's module, then verdicts that were not attacked yet, then all.
+    late: Mapping[int, int] = MappingProxyType({}),
+) -> Iterator[Template | Report | Progress]:
+    """Yield the texts of a system's module, its rows, all open, and each verdict once it is final.
 
     Parameters
     ----------
     points : how many points the attack takes; fewer in tests of many small networks alone.
     apart : where printed texts are read back: in turn, or `beside` proofs and attacks.
+    late : how often rows have taken more than their share; see `Request`.
     """
     made = template_of(iphs)
     yield made
@@ -44,17 +52,80 @@ def examine(
     of_system = apart(_read_back(iphs, texts, (".py", ".c")))
     of_step = apart(_read_back(iphs, texts, ("_step.c",)))
     with of_system as system, of_step as step:
-        proved = decide(iphs)
-        yield proved
-        module = module_from(texts[".py"])
-        proofs = (r for r in proved.rows if r.id in ATTACKED and r.verdict is Verdict.PROVED)
-        claims = tuple((row.id, row.element) for row in proofs)
-        attacks = falsify(iphs, module, claims, points=points)
-        rows = (*proved.rows, worst((next(system), next(step))))
-    found = {(attack.id, attack.element): attack for attack in attacks}
-    attacked = (_attacked(row, found.get((row.id, row.element))) for row in rows)
-    rounding = (_rounding(attack) for attack in attacks if attack.worst)
-    yield replace(proved, rows=(*attacked, *rounding))
+        report = stated(iphs)
+        report = replace(report, rows=(*report.rows, PROGRAM))
+        yield report
+        work = _Work(iphs, report, texts[".py"], points, (system, step))
+        again = [n for n, times in late.items() if times == 1]
+        rest = [n for n in range(len(report.obligations)) if n not in late]
+        yield from work.decided(rest, SHARE)
+        if work.program not in late:
+            yield from work.read_back(0.5 if again else 1.0)
+        for number in sorted(again):
+            if number == work.program:
+                yield from work.read_back(1.0)
+            else:
+                left_out = (n for n, times in late.items() if times > 1)
+                yield from work.decided(work.after(number, left_out), 1 / len(again))
+        yield work.begun(None, 1.0)
+
+
+def examined(messages: Iterable[Template | Report | Progress]) -> Report:
+    """Return the report that messages make up."""
+    record = Record("", 0.0)
+    for message in messages:
+        if not isinstance(message, Template):
+            record.take(message)
+    return record.report()
+
+
+@final
+class _Work:
+    """The rows of a system that is examined."""
+
+    def __init__(
+        self, iphs: IPHS, report: Report, text: str, points: int, read: Iterable[Iterator[Row]]
+    ) -> None:
+        self.iphs, self.points, self.read = iphs, points, read
+        self.prover, self.program = Prover(iphs, report), len(report.rows) - 1
+        self._text, self._done = text, dict[int, Row]()
+
+    def begun(self, number: int | None, part: float) -> Progress:
+        """Return what has been decided since this was asked before, and what is done next."""
+        done, self._done = self._done, {}
+        return Progress(done, number, part)
+
+    def after(self, late: int, left_out: Iterable[int]) -> list[int]:
+        """Return a row and those that rest on it, without those that are left out."""
+        return [n for n in self.prover.resting((late,)) if n not in {*left_out}]
+
+    def decided(self, numbers: Iterable[int], part: float) -> Iterator[Progress]:
+        """Decide rows and attack those that are proved; a row that was attacked stays as it is."""
+        claims = list[int]()
+        for number in numbers:
+            yield self.begun(number, part)
+            row = self.prover.decide(number)
+            if row.id in ATTACKED and row.verdict is Verdict.PROVED:
+                claims.append(number)
+            else:
+                self._done[number] = row
+        if not claims:
+            return
+        yield self.begun(None, 1.0)
+        keys = {n: (self.prover.rows[n].id, self.prover.rows[n].element) for n in claims}
+        hunt = Hunt(self.iphs, module_from(self._text), tuple(keys.values()), self.points)
+        hunt.search()
+        for number, key in keys.items():
+            yield self.begun(number, part)
+            row, attack = self.prover.rows[number], hunt.attack(key)
+            self.prover.rows[number] = self._done[number] = _attacked(row, attack)
+            if attack and attack.worst:  # a row more, after all others
+                self._done[self.program + 1 + number] = _rounding(attack)
+
+    def read_back(self, part: float) -> Iterator[Progress]:
+        """Decide the row on the printed texts."""
+        yield self.begun(self.program, part)
+        self._done[self.program] = worst([next(rows) for rows in self.read])
 
 
 def _read_back(iphs: IPHS, texts: Mapping[str, str], endings: tuple[str, ...]) -> Iterator[Row]:
@@ -62,23 +133,8 @@ def _read_back(iphs: IPHS, texts: Mapping[str, str], endings: tuple[str, ...]) -
     yield program_row(iphs, texts, endings)
 
 
-def unfinished(report: Report, reason: str) -> Report:
-    """Return a report whose proved rows were not all attacked: those are open."""
-    rows = (
-        replace(row, verdict=Verdict.OPEN, reason=reason)
-        if row.id in ATTACKED and row.verdict is Verdict.PROVED
-        else row
-        for row in report.rows
-    )
-    program = Row("program", "", "the printed modules are the proved system", Verdict.OPEN)
-    missing = () if any(r.id == "program" for r in report.rows) else (program,)
-    return replace(report, rows=(*rows, *(replace(row, reason=reason) for row in missing)))
-
-
 def _attacked(row: Row, attack: Attack | None) -> Row:
     """Return a row with the number of points that it was attacked at; without any it is open."""
-    if row.id not in ATTACKED or row.verdict is not Verdict.PROVED:
-        return row
     if attack is None or attack.points == 0:
         reason = "no point of the domain was found at which numbers could contradict it"
         return replace(row, verdict=Verdict.OPEN, reason=reason)

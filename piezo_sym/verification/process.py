@@ -9,17 +9,28 @@ from __future__ import annotations
 import base64
 import os
 import pickle
+import signal
 from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import cache
 from threading import Thread
+from time import monotonic
 from typing import TYPE_CHECKING, Any, final
 
 from piezo_sym.errors import PiezoError
 from piezo_sym.processes import Worker, beside
 from piezo_sym.spec.values import Template
+from piezo_sym.verification.protocol import (
+    ENDED,
+    KILLED,
+    LATE,
+    OVERDUE,
+    TOO_LARGE,
+    Request,
+    Stop,
+)
 
 if TYPE_CHECKING:
     from piezo_sym.iphs import IPHS
@@ -31,8 +42,6 @@ PATIENCE, MORE_PATIENCE, SMALL = 28.0, 1.0, 10
 #: Systems of fewer elements are read back sooner than a copy of a process pays: it takes 0.2 s of
 #: work, as every page that it touches is copied.
 FEWEST_BESIDE = 12
-#: Said where a process has ended.
-ENDED = "not decided: the process ended, for want of memory or by a fault"
 #: The line after the last message on a subject.
 END = b"\n"
 
@@ -107,42 +116,36 @@ def examining(model: Model) -> Iterator[Examination]:
 def _report(subject: IPHS | Model, model: Model, texts: Future[Template]) -> Report:
     """Return the report on a system; the texts of its module are set when they are known."""
     started()
-    from piezo_sym.proofs.report import Report, Row, Verdict  # meanwhile
+    from piezo_sym.verification.record import Record  # meanwhile
 
-    seconds = PATIENCE + MORE_PATIENCE * max(0, len(model.elements) - SMALL)
-    reports: list[Any] = []
-    for message in messages(_examiner(), subject, seconds):
-        if isinstance(message, Template):
-            texts.set_result(message)
-        else:
-            reports.append(message)
-    *reports, last = reports
-    if isinstance(last, PiezoError):
-        raise last
-    if isinstance(last, Report):
-        return last
-    from piezo_sym.verification.examine import unfinished
+    limit = PATIENCE + MORE_PATIENCE * max(0, len(model.elements) - SMALL)
+    record, ends = Record(model.name, limit), monotonic() + limit
+    while True:
+        stop: Stop | PiezoError | None = None
+        for message in messages(_examiner(), Request(subject, ends - monotonic(), record.late)):
+            if isinstance(message, Stop | PiezoError):
+                stop = message
+            elif not isinstance(message, Template):
+                record.take(message)
+            elif not texts.done():
+                texts.set_result(message)
+        if isinstance(stop, PiezoError):
+            raise stop
+        if stop is None or not record.goes_on(stop):
+            return record.report()
 
-    row = Row("derivation", "", "the system, derived", Verdict.OPEN, reason=last)
-    return unfinished(reports[-1] if reports else Report(model.name, (row,)), last)
 
-
-def messages(worker: Worker, subject: object, seconds: float) -> Iterator[Any]:
-    """Yield a `Template`, `Report`s, or an error, or the reason why there is no more, as text.
-
-    Parameters
-    ----------
-    subject : an `IPHS` or a `Model`.
-    seconds : after which the process is stopped.
-    """
+def messages(worker: Worker, request: Request) -> Iterator[Any]:
+    """Yield what `examine` does, then an error or a `Stop` if it did not come to its end."""
     try:
-        for line in worker.ask(packed(subject), seconds, END.__eq__):
+        for line in worker.ask(packed(request), max(0.0, request.seconds), END.__eq__):
             if line != END:
                 yield pickle.loads(base64.b64decode(line))
     except TimeoutError:
-        yield f"not decided in {seconds:g} s"
+        yield OVERDUE
     except (EOFError, BrokenPipeError):
-        yield ENDED
+        ends = {-signal.SIGALRM: LATE, -signal.SIGKILL: KILLED}  # who stops it wants no other
+        yield ends.get(worker.status or 0, ENDED)
 
 
 def packed(subject: object) -> bytes:
@@ -156,19 +159,21 @@ def _examiner() -> Worker:
     return Worker("-m", "piezo_sym.verification.worker", group=True)  # solvers stop with it
 
 
-def answer(subject: Any) -> Iterator[object]:
+def answer(request: Request) -> Iterator[object]:
     """Yield the messages on one subject; called in the process."""
     from piezo_sym.derivation import derive
     from piezo_sym.iphs import IPHS
     from piezo_sym.verification.examine import examine
 
+    subject = request.subject
     try:
         iphs = subject if isinstance(subject, IPHS) else derive(subject)
         several = len(iphs.model.flatten().elements) >= FEWEST_BESIDE and (os.cpu_count() or 1) > 1
-        yield from examine(iphs, apart=beside if several else nullcontext)
+        apart = beside if several else nullcontext
+        yield from examine(iphs, apart=apart, late=request.late)
     except PiezoError as error:
         yield error
     except EOFError:
         yield ENDED
     except (MemoryError, RecursionError):
-        yield "needs more memory than it is given"
+        yield TOO_LARGE

@@ -12,16 +12,21 @@ import pickle
 import resource
 import signal
 import sys
+from time import monotonic
 
 from piezo_sym.verification.process import END, answer, packed
+from piezo_sym.verification.protocol import Progress
 
 #: Bytes of address space; no system that is decided in time needs as much.
 MEMORY = 8 << 30
+#: Seconds that are no limit to anything that ends.
+LEAST = 0.1
 
 
 def main() -> None:
     """Answer until stdin ends; Ctrl-C is left to the parent process, which ends stdin."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
     _, most = resource.getrlimit(resource.RLIMIT_AS)
     limit = MEMORY if most == resource.RLIM_INFINITY else min(MEMORY, most)
     resource.setrlimit(resource.RLIMIT_AS, (limit, most))
@@ -31,15 +36,28 @@ def main() -> None:
     import piezo_sym.verification.examine  # noqa: F401  # while the caller still reads its spec
 
     for number, line in enumerate(given):
-        for message in answer(pickle.loads(base64.b64decode(line))):
+        request, begun = pickle.loads(base64.b64decode(line)), monotonic()
+        for message in answer(request):
             out.write(packed(message) + b"\n")
             out.flush()
+            if isinstance(message, Progress):
+                left = begun + request.seconds - monotonic()
+                end_after(left * message.part if message.part < 1 else 0.0)
+        end_after(0.0)
         out.write(END)
         out.flush()
         if number == 0:  # imported modules stay: later collections skip them
             del message
             gc.collect()
             gc.freeze()
+
+
+def end_after(seconds: float) -> None:
+    """End this process if it still does the same after some seconds; 0 for never.
+
+    The system ends it, which needs no turn of the interpreter: a power of large numbers has none.
+    """
+    signal.setitimer(signal.ITIMER_REAL, max(seconds, LEAST) if seconds else 0.0)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ from piezo_sym.proofs import Verdict, decide, obligations, prove
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.tables import banks
 from piezo_sym.translation import field, program_row
-from piezo_sym.verification.examine import examine
+from piezo_sym.verification.examine import examine, examined
 
 DERIVED, REFUSED = "derived", "refused"
 PROVED = ("skew", "casimir", "energy", "entropy")
@@ -42,11 +42,11 @@ WORK = 300_000
 
 def check(spec, seed=0):
     """Check one network, and return whether it was derived or refused."""
-    return check_laws(spec, seed, examine=partial(check_examination, spec))
+    return check_laws(spec, seed, more=partial(check_examination, spec))
 
 
-def check_laws(spec, seed=0, examine=None):
-    """Check the laws of one network, by algebra and by numbers, and `examine` it.
+def check_laws(spec, seed=0, more=None):
+    """Check the laws of one network, by algebra and by numbers, and `more`.
 
     Return whether it was derived or refused.
     """
@@ -62,8 +62,8 @@ def check_laws(spec, seed=0, examine=None):
     balances = (o for o in obligations(systems[0]) if o.id in PROVED)
     check_proved((prove(o, systems[0]) for o in itertools.islice(balances, len(PROVED))), PROVED)
     template = template_of(iphs)
-    if examine:
-        examine(iphs, template, seed)
+    if more:
+        more(iphs, template, seed)
     module = module_from(template.filled(model.flatten().model_dump())[".py"])
     points = [point(spec, iphs, seed + n) for n in range(POINTS)]
     for x, u in points:
@@ -84,7 +84,7 @@ def check_proved(rows, wanted):
 
 def check_examination(spec, iphs, template, seed):
     """Check the report on a network, and that its files are the same when written again."""
-    report = examined(iphs, template, attacked=seed % ATTACKED == 0)
+    report = report_on(iphs, template, attacked=seed % ATTACKED == 0)
     assert all(r.verdict is not Verdict.REFUTED for r in report.rows if r.id == "program")
     read_back = () if may_stay_open(spec) or may_stay_unread(report) else ("program",)
     check_proved(report.rows, (*PROVED, *read_back))
@@ -93,11 +93,10 @@ def check_examination(spec, iphs, template, seed):
         assert all(one.splitlines() == again[name].splitlines() for name, one in first.items())
 
 
-def examined(iphs, template, *, attacked):
+def report_on(iphs, template, *, attacked):
     """Return the proofs of a system and of its printed modules, attacked by numbers or not."""
     if attacked:
-        *_, report = examine(iphs, points=FEW)
-        return report
+        return examined(examine(iphs, points=FEW))
     proved = decide(iphs)
     texts = template.filled(iphs.model.flatten().model_dump())
     with patch.object(field, "MOST_WORK", WORK):

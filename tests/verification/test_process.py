@@ -19,13 +19,8 @@ from piezo_sym.proofs import Report, Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.values import Template
 from piezo_sym.verification import examine, process
-from piezo_sym.verification.process import (
-    ENDED,
-    answer,
-    examined_model,
-    examining,
-    messages,
-)
+from piezo_sym.verification.process import answer, examined_model, examining, messages
+from piezo_sym.verification.protocol import ENDED, OVERDUE, Progress, Request
 from tests.proofs.test_false_proofs import MASS
 
 
@@ -47,8 +42,9 @@ def test_a_report_is_that_of_the_system():
 
 def test_what_takes_too_long_is_stopped_and_the_next_one_is_answered(examiner):
     model = load("oscillator")
-    assert list(messages(examiner, model, 0.01)) == ["not decided in 0.01 s"]
-    assert {type(m) for m in messages(examiner, model, 60.0)} == {Template, Report}
+    assert list(messages(examiner, Request(model, 0.01))) == [OVERDUE]
+    found = {type(m) for m in messages(examiner, Request(model, 60.0))}
+    assert found == {Template, Report, Progress}
 
 
 def test_what_is_not_decided_in_time_is_open(monkeypatch):
@@ -67,7 +63,7 @@ def test_an_error_of_the_derivation_comes_back_as_it_is(examiner):
     )
     with pytest.raises(PiezoError) as wanted:
         derive(broken)
-    (error,) = messages(examiner, broken, 60.0)
+    (error,) = messages(examiner, Request(broken, 60.0))
     assert isinstance(error, PiezoError)
     assert str(error) == str(wanted.value)
 
@@ -185,13 +181,13 @@ def test_a_program_whose_reading_dies_is_open(monkeypatch):
     monkeypatch.setattr(process, "FEWEST_BESIDE", 1)
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     monkeypatch.setattr(examine, "program_row", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
-    *first, last = answer(load("piezo_stack"))
+    *first, last = answer(Request(load("piezo_stack"), 60.0))
     assert last == ENDED
     monkeypatch.setattr(process, "messages", lambda *_: iter((*first, last)))
     rows = {row.id: row for row in examined_model(load("piezo_stack")).rows}
     assert rows["program"].verdict is Verdict.OPEN
-    assert ENDED in rows["program"].reason
-    assert rows["passive"].verdict is Verdict.OPEN  # it is not known what numbers say
+    assert ENDED.reason in rows["program"].reason
+    assert rows["passive"].verdict is Verdict.PROVED  # it was attacked before
 
 
 def test_texts_come_before_the_verdicts_on_them():

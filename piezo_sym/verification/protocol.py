@@ -1,0 +1,70 @@
+"""What the process that examines systems is asked, and what it answers besides texts and rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, final
+
+if TYPE_CHECKING:
+    from piezo_sym.iphs import IPHS
+    from piezo_sym.proofs.report import Row
+    from piezo_sym.spec.model import Model
+
+
+@final
+@dataclass(frozen=True)
+class Request:
+    """What the process is asked.
+
+    Attributes
+    ----------
+    subject : the system, or a model of it.
+    seconds : after which the process is stopped.
+    late : how often each row, by its number, has taken more than its share: once, and it comes
+        last; twice, and it is left out.
+    """
+
+    subject: IPHS | Model
+    seconds: float
+    late: Mapping[int, int] = field(default_factory=dict)
+
+
+@final
+@dataclass(frozen=True)
+class Progress:
+    """What is decided since the message before, and what is done next.
+
+    Attributes
+    ----------
+    rows : verdicts by their number in the report; those beyond its rows are added to it.
+    next : the number of the row that is looked at next, or None.
+    part : of the time that is left, which that row may take.
+    """
+
+    rows: Mapping[int, Row]
+    next: int | None = None
+    part: float = 1.0
+
+
+@final
+@dataclass(frozen=True)
+class Stop:
+    """Why there are no more messages.
+
+    Attributes
+    ----------
+    reason : in words, with {limit} for the seconds that there were in all.
+    last : whether the system is not to be examined again.
+    """
+
+    reason: str
+    last: bool = False
+
+
+#: The time is over; a row has taken more than its share of it; a process ended.
+OVERDUE = Stop("not decided in {limit:g} s", last=True)
+LATE = Stop("not decided in its share of {limit:g} s")
+ENDED = Stop("not decided: the process ended, for want of memory or by a fault")
+KILLED = Stop(ENDED.reason, last=True)
+TOO_LARGE = Stop("needs more memory than it is given")

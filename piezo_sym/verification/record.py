@@ -1,0 +1,71 @@
+"""Rows that are decided one after the other, where any of them may take all the time there is.
+
+Input: messages of the process that examines a system.  Output: its `Report`, and which rows come
+last when it is examined again.  A row is PROVED only where a message says so; what no message is
+about is OPEN, and says which row took the time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import final
+
+from piezo_sym.proofs.report import Report, Row, Verdict
+from piezo_sym.verification.protocol import Progress, Stop
+
+#: What is done where no row is being looked at.
+ATTACK = "the search for numbers that contradict it"
+
+
+@final
+@dataclass(eq=False)
+class Record:
+    """What is known of the rows of a model.
+
+    Attributes
+    ----------
+    model : its name.
+    limit : seconds that it may take in all.
+    late : how often each row has taken more than its share; see `Request`.
+    """
+
+    model: str
+    limit: float
+    late: dict[int, int] = field(default_factory=dict)
+    _stated: Report | None = None
+    _rows: dict[int, Row] = field(default_factory=dict)
+    _next: int | None = None
+    _why: dict[int, str] = field(default_factory=dict)
+    _stop: str = ""
+
+    def take(self, message: Report | Progress) -> None:
+        """Take note of all rows, which are open, or of verdicts on some."""
+        if isinstance(message, Report):
+            self._stated = message
+        else:
+            self._rows |= message.rows
+            self._next = message.next
+
+    def goes_on(self, stop: Stop) -> bool:
+        """Return whether a system is to be examined again after an early end."""
+        number, self._next, self._stop = self._next, None, stop.reason.format(limit=self.limit)
+        if number is None:
+            return False
+        self._why[number] = self._stop
+        self.late[number] = self.late.get(number, 0) + 1
+        left = (n for n, times in self.late.items() if times == 1 and n not in self._rows)
+        return not stop.last and any(True for _ in left)
+
+    def report(self) -> Report:
+        """Return the report, the rows that are not decided open."""
+        if self._stated is None:
+            row = Row("derivation", "", "the system, derived", Verdict.OPEN, reason=self._stop)
+            return Report(self.model, (row,))
+        rows = dict(enumerate(self._stated.rows)) | self._rows
+        hard = [rows[n].name for n in sorted(self._why) if n not in self._rows]
+        lost = f"{self._stop}: {' and '.join(hard) or ATTACK} took the time"
+        for n, row in rows.items():
+            if n not in self._rows and row.verdict is Verdict.OPEN and not row.reason:
+                own = self._why.get(n)
+                rows[n] = replace(row, reason=own or lost, waits=own is None)
+        return replace(self._stated, rows=tuple(rows[n] for n in sorted(rows)))
