@@ -36,8 +36,7 @@ from piezo_sym.expressions.tree import (
 )
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, DissipativePort, Port, Storage
-from piezo_sym.spec.model import Model
-from piezo_sym.spec.tables import bank_states, banks, conditions, greater, lane_parameters, states
+from piezo_sym.spec.tables import bank_states, banks, greater, states
 
 TABLE = sp.Function("table")
 
@@ -113,10 +112,10 @@ class SymbolTable:
 def symbol_table(circuit: Circuit) -> SymbolTable:
     """Return the symbols of a circuit's parameters, inputs, states and named quantities."""
     model = circuit.model
-    signs = _signs(model)
+    signs = _signs(circuit)
     sizes = banks(model)
     per_lane = bank_states(model)
-    owners = lane_parameters(model)
+    owners = circuit.lane_parameters
     per_lane |= {n: owners[n] for n, p in model.parameters.items() if isinstance(p.value, tuple)}
     names = [*model.parameters, *model.inputs, *states(model)]
     for placed in circuit.ports:
@@ -152,15 +151,15 @@ def _symbol(name: str, bank: str | None, sign: Mapping[str, bool] | None) -> sp.
     return sp.Symbol(name, **known) if bank is None else LaneSymbol(name, bank, **known)
 
 
-def _signs(model: Model) -> dict[str, dict[str, bool]]:
+def _signs(circuit: Circuit) -> dict[str, dict[str, bool]]:
     """Return the SymPy assumption on each parameter or input that the domain bounds by zero."""
     found: dict[str, dict[str, bool]] = {}
-    for condition in conditions(model):
+    for condition in circuit.conditions:
         match greater(condition.tree):
             case Cmp(">" | ">=" as op, Sym(name), right) if right == ZERO:
                 if found.get(name) != {"positive": True}:
                     found[name] = {"positive": True} if op == ">" else {"nonnegative": True}
-    known = {*model.parameters, *model.inputs}
+    known = {*circuit.model.parameters, *circuit.model.inputs}
     return {name: sign for name, sign in found.items() if name in known}
 
 

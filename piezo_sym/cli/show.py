@@ -150,10 +150,10 @@ def _joined(iphs: IPHS) -> Iterator[str]:
 
 def _domain(iphs: IPHS) -> Iterator[str]:
     """Yield the conditions of the domain, with the place of those that kinds imply."""
-    from piezo_sym.spec.tables import condition_text, conditions
+    from piezo_sym.spec.tables import condition_text
 
     yield "\nDomain"
-    for condition in conditions(iphs.model):
+    for condition in iphs.circuit.conditions:
         needs = "" if condition.where.startswith("domain.") else f"  ({condition.where})"
         yield f"  {condition_text(condition.tree)}{needs}"
 

@@ -96,11 +96,13 @@ def collocation_of(iphs: IPHS) -> Collocation:
     means = tuple(
         item for item in q.defined if item.note == COSTATES and not is_affine(item.value, states)
     )
-    elements = iphs.model.elements.values()
+    elements, own = iphs.model.elements.values(), stage_quantities(q, paths)
+    rates = rates_of(own)  # of slopes, too, where no path tells their quantities apart
+    smooth = slope_quantities(q, paths)
     return Collocation(
         means=tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means),
-        stage=_stage(stage_quantities(q, paths), means),
-        slopes=_slopes(slope_quantities(q, paths), means),
+        stage=_stage(own, rates, means),
+        slopes=_slopes(smooth, rates if smooth is own else rates_of(smooth), means),
         heated=_heated(q),
         jumps=any(getattr(element, "discontinuous", False) for element in elements),
         paths=paths,
@@ -114,8 +116,8 @@ def _heated(q: Quantities) -> int:
     return next(bodies, -1) if lossy else -1
 
 
-def _stage(q: Quantities, means: tuple[Quantity, ...]) -> Stage:
-    rates, new = rates_of(q), Names(q.taken)
+def _stage(q: Quantities, rates: tuple[OutputRow, ...], means: tuple[Quantity, ...]) -> Stage:
+    new = Names(q.taken)
     booked = (*supply_of(q), *heats_of(q), *productions_of(q), *exchanges_of(q))
     defined = tuple(item for item in q.defined if item not in means)
     values = switched_values(defined, (*rates, *booked), q.lanes, new, means=means)
@@ -132,9 +134,9 @@ def _stage(q: Quantities, means: tuple[Quantity, ...]) -> Stage:
     )
 
 
-def _slopes(q: Quantities, means: tuple[Quantity, ...]) -> Slopes:
+def _slopes(q: Quantities, rates: tuple[OutputRow, ...], means: tuple[Quantity, ...]) -> Slopes:
     new, given = Names(q.taken), {mean.name for mean in means}
-    values = switched_values(q.defined, rates_of(q), q.lanes, new, compared_names=given)
+    values = switched_values(q.defined, rates, q.lanes, new, compared_names=given)
     entries, derivatives = jacobian_of(
         *(values.rows, q.states, values.quantities, values.lanes, new, q.temperatures)
     )

@@ -13,10 +13,9 @@ from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.program import Described, ModuleFunction, Names, Program
 from piezo_sym.codegen.quantities import Quantities, quantities_of
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.circuit import Placed
+from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
-from piezo_sym.spec.model import Model
-from piezo_sym.spec.tables import banks, lane_parameters
+from piezo_sym.spec.tables import banks
 
 
 def lower(iphs: IPHS, verdict: str) -> Program:
@@ -55,7 +54,7 @@ def program_of(q: Quantities, functions: tuple[ModuleFunction, ...]) -> Program:
         source=model.model.source,
         sha256=model.sha256,
         verdict="",
-        parameters=tuple(_parameters(model)),
+        parameters=tuple(_parameters(q.iphs.circuit)),
         inputs=tuple(Described(n, i.dimension.si, i.doc) for n, i in model.inputs.items()),
         states=q.states,
         outputs=tuple(_output(placed) for placed in q.ports),
@@ -79,9 +78,9 @@ def _printed(value: float | tuple[float, ...]) -> str | tuple[str, ...]:
     return tuple(map(repr, value)) if isinstance(value, tuple) else repr(value)
 
 
-def _parameters(model: Model) -> Iterator[Described]:
-    owners = lane_parameters(model)
-    for name, entry in model.parameters.items():
+def _parameters(circuit: Circuit) -> Iterator[Described]:
+    owners = circuit.lane_parameters
+    for name, entry in circuit.model.parameters.items():
         yield Described(name, entry.dimension.si, entry.doc, owners.get(name))
 
 

@@ -88,6 +88,8 @@ def paths_of(q: Quantities, new: Names) -> tuple[Path, ...]:
 
 def stage_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:
     """Return the quantities of a stage, which is given the efforts, slips and heats of paths."""
+    if not paths:
+        return q
     given = {name for path in paths for name in (path.effort, path.slip, path.heat)}
     heats = {q.heats[k]: Sym(p.heat) for p in paths for k in [q.outputs.index(Sym(p.slip))]}
 
@@ -100,6 +102,8 @@ def stage_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:
 
 def slope_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:
     """Return the quantities for slopes: slips of paths as differentiable functions of the state."""
+    if not paths:
+        return q
     slips = {path.slip: path.mean_slip for path in paths}
     defined = tuple(replace(d, value=slips.get(d.name, d.value)) for d in q.defined)
     return replace(q, defined=defined, given=_lanes(paths))

@@ -30,7 +30,7 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.tables import condition_text, conditions, greater, lane_parameters
+from piezo_sym.spec.tables import condition_text, greater
 
 COSTATES = "co-states dU/dx"
 #: The quantity that is the difference of a temperature and a constant.
@@ -96,7 +96,7 @@ class Quantities:
         """The bank of every name that has a value per lane."""
         lanes = {port.state: placed.bank for placed, port in self.stores if placed.bank}
         lanes |= {item.name: item.bank for item in self.defined if item.bank}
-        return {**lane_parameters(self.iphs.model), **self.given, **lanes}
+        return {**self.iphs.circuit.lane_parameters, **self.given, **lanes}
 
     @cached_property
     def _names(self) -> Mapping[Expr, Sym]:
@@ -186,7 +186,7 @@ def _laws(iphs: IPHS, excesses: Excesses) -> dict[str, Expr]:
 
 def _limits(iphs: IPHS, excesses: Excesses) -> Iterator[Limit]:
     """Yield the conditions of the domain with their margins, greater minus smaller side."""
-    for condition in conditions(iphs.model):
+    for condition in iphs.circuit.conditions:
         test = greater(condition.tree)
         margin = with_excess(add(test.left, neg(test.right)), excesses)
         yield Limit(condition_text(condition.tree), "=" not in test.op, margin)

@@ -68,9 +68,7 @@ class Claim:
 def claim_of(probe: Probe, id_: str, element: str) -> Claim | None:
     """Return the claim of a row, or None if it cannot be evaluated at a point."""
     circuit = probe.iphs.circuit
-    ports = [placed.port for placed in circuit.ports if placed.element == element]
-    heaters = tuple(port.input for _, port in circuit.of(HeatInput))
-    bodies = [placed.element for placed, _ in circuit.of(Body)]
+    ports = circuit.by_element.get(element)
     match id_, ports[-1] if ports else None:
         case (("passive" | "conductance"), DissipativePort()):
             heat = Sym(f"heat {element}")
@@ -87,12 +85,14 @@ def claim_of(probe: Probe, id_: str, element: str) -> Claim | None:
             total = probe.produced
             return Claim(id_, element, (Inequality("sigma", total, total),))
         case "environment", _:
-            return Claim(id_, "", (_balance(probe, "the production", bodies, ONE),), zero=heaters)
+            zero = tuple(port.input for _, port in circuit.of(HeatInput))
+            made = _balance(probe, "the production", circuit.bodies, ONE)
+            return Claim(id_, "", (made,), zero=zero)
         case "exergy", _:
             outside = tuple(port.input for _, port in circuit.of(Exchange))
-            sources = (port.input for _, port in circuit.of(Source))
-            lost = _balance(probe, "the exergy lost", bodies, Sym(outside[0]))
-            zero = tuple(name for name in (*sources, *heaters) if name not in outside)
+            driven = (port.input for _, port in circuit.of(Source, HeatInput))
+            lost = _balance(probe, "the exergy lost", circuit.bodies, Sym(outside[0]))
+            zero = tuple(name for name in driven if name not in outside)
             return Claim(id_, "", (lost,), zero=zero, equal=outside)
         case "invariant", Body():
             return _coldest(probe, element)

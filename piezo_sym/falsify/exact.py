@@ -20,7 +20,6 @@ from piezo_sym.falsify.claims import Claim
 from piezo_sym.falsify.floats import Row
 from piezo_sym.falsify.probe import Probe
 from piezo_sym.falsify.space import Array, Space
-from piezo_sym.spec.tables import conditions
 
 #: Precision of enclosures: the numbers of a point may be 600 decades apart.
 BITS = 4096
@@ -37,7 +36,7 @@ class Exact:
 
     def __init__(self, probe: Probe) -> None:
         self.probe = probe
-        self.conditions = [condition.tree for condition in conditions(probe.iphs.model)]
+        self.conditions = [condition.tree for condition in probe.iphs.circuit.conditions]
         self.points: dict[tuple[Any, ...], Point] = {}
 
     def at(self, space: Space, values: Sequence[float | Fraction]) -> Point:

@@ -22,7 +22,6 @@ from piezo_sym.falsify.points import FEW, STAGES, Draw
 from piezo_sym.falsify.probe import probe_of
 from piezo_sym.falsify.space import Array, Evaluation, Mask, Space
 from piezo_sym.iphs import IPHS
-from piezo_sym.spec.tables import conditions
 
 POINTS = 100_000
 #: Lanes per bank of a point; most lanes of the spec's own values that are tried.
@@ -117,7 +116,7 @@ class Hunt:
         self.wanted = min(points, self.space.most)
         self._tracks = {row: Track(claim) for row, claim in found.items() if claim}
         self.tracks = [*self._tracks.values()]
-        trees = [condition.tree for condition in conditions(iphs.model)]
+        trees = [condition.tree for condition in iphs.circuit.conditions]
         self.conditioned = {name for tree in trees for name in names(tree)}
         most = min(MOST_LANES, max(sizes.values(), default=1))
         known = [self.space.own(lane) for lane in range(0, most, LANES)]

@@ -20,7 +20,7 @@ from piezo_sym.expressions.tree import Cmp, Expr, Num, Sym
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.falsify.floats import COMPARED, Approx, Floats
 from piezo_sym.falsify.probe import RESULTS, Probe
-from piezo_sym.spec.tables import conditions, greater
+from piezo_sym.spec.tables import greater
 
 Array = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
@@ -82,7 +82,7 @@ class Space:
     def positive(self) -> Mask:
         """Mask of the columns that a condition of the domain keeps from being negative."""
         found = set()
-        for condition in conditions(self.probe.iphs.model):
+        for condition in self.probe.iphs.circuit.conditions:
             match greater(condition.tree):
                 case Cmp(_, Sym(name), Num(value)) if value >= 0:
                     found.add(name)

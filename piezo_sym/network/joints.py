@@ -24,7 +24,7 @@ from piezo_sym.network.kirchhoff import Laws
 from piezo_sym.spec.circuit import Circuit, Placed
 from piezo_sym.spec.elements.ports import Coupling, Storage
 from piezo_sym.spec.model import Model
-from piezo_sym.spec.tables import conditions, laws, starts
+from piezo_sym.spec.tables import laws, starts
 
 #: Tolerance on co-states of initial values, relative to their terms.
 CLOSE = 1e-9
@@ -102,7 +102,7 @@ def join_stores(laws: Laws) -> tuple[Circuit, tuple[Joint, ...]]:
         rows = [{n: sp.S.One} for n in kept] + [Z[m] for m in followers]
         shares = sp.Matrix([[row.get(n, sp.S.Zero) for n in kept] for row in rows])
         joint = _joint(circuit, stores, shares)
-        _check_uses(circuit.model, joint)
+        _check_uses(circuit, joint)
         _check_starts(circuit.model, joint)
         for (placed, _), port in zip(stores, _kept_stores(circuit, joint, shares), strict=False):
             circuit = circuit.replaced(placed, port)
@@ -200,10 +200,10 @@ def _kept_stores(circuit: Circuit, joint: Joint, Z: sp.Matrix) -> Iterator[Stora
         yield replace(member.store, law=div(top, divisor), energy=energy, doc=doc)
 
 
-def _check_uses(model: Model, joint: Joint) -> None:
+def _check_uses(circuit: Circuit, joint: Joint) -> None:
     """Refuse laws and conditions that use the state of a follower."""
-    used = [(c.where, {*names(c.tree)}) for c in conditions(model)]
-    used += [(law.where, {*names(law.tree)}.difference(law.letters)) for law in laws(model)]
+    used = [(c.where, {*names(c.tree)}) for c in circuit.conditions]
+    used += [(law.where, {*names(law.tree)}.difference(law.letters)) for law in laws(circuit.model)]
     for store in (member.store for member in joint.followers):
         for where, words in used:
             if store.state in words:

@@ -127,7 +127,7 @@ def _of_element(
         if law.letter:
             information = laws.rate_independent if law.rate else laws.odd
             stated += (laws.passive(law, assumptions), information(law, assumptions))
-        elif any(placed.element == element for placed, _ in iphs.circuit.of(Conductor)):
+        elif any(isinstance(port, Conductor) for port in iphs.circuit.by_element[element]):
             stated.append(laws.conducts(law, assumptions))
     loose = next((law.letter for law in own if None in law.ties), "")
     yield from (replace(obligation, loose=loose) for obligation in stated if obligation)

@@ -20,7 +20,7 @@ from piezo_sym.spec.elements.ports import (
     Exchange,
     Storage,
 )
-from piezo_sym.spec.tables import condition_text, conditions
+from piezo_sym.spec.tables import condition_text
 
 
 @final
@@ -94,7 +94,7 @@ class Assumptions:
 
 def assumptions_of(iphs: IPHS) -> Assumptions:
     """Return the assumptions on a model; row ``temperature`` proves that of T > 0."""
-    trees = tuple(condition.tree for condition in conditions(iphs.model))
+    trees = tuple(condition.tree for condition in iphs.circuit.conditions)
     placed = tuple(iphs.circuit.of(Body))
     words = [port.temperature for _, port in placed]
     warm = tuple(Cmp(">", Sym(word), ZERO) for word in words)

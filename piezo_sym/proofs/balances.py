@@ -32,7 +32,7 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.tables import conditions, greater
+from piezo_sym.spec.tables import greater
 
 
 def skew(iphs: IPHS) -> Obligation:
@@ -195,7 +195,7 @@ def _slope_questions(
     A branch that is an edge, a = b, is compared on the edge.  The slope of either side may be used
     there, as rows ``continuous`` show that neither energy nor law jumps.
     """
-    known = tuple(condition.tree for condition in conditions(iphs.model))
+    known = tuple(condition.tree for condition in iphs.circuit.conditions)
     positive = {c.left for c in map(greater, known) if c.op == ">" and c.right == ZERO}
     for branch in branches(Call("together", (slope, law)), known):
         where = tuple(_numerator(condition, positive) for condition in branch.conditions)

@@ -19,12 +19,12 @@ from piezo_sym.proofs.laws import branch_questions, value_questions
 from piezo_sym.proofs.obligations import Obligation, Question
 from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, HeatInput
 from piezo_sym.spec.names import fresh
-from piezo_sym.spec.tables import conditions, greater
+from piezo_sym.spec.tables import greater
 
 
 def temperature(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """Yield for each body the obligation that T > 0 and dT/dS > 0."""
-    domain = tuple(condition.tree for condition in conditions(iphs.model))
+    domain = tuple(condition.tree for condition in iphs.circuit.conditions)
     used = {name for tree in domain for name in names(tree)}
     for placed, port in iphs.circuit.of(Body):
         tie = (Cmp("=", Sym(port.temperature), port.law),) if port.temperature in used else ()
@@ -62,7 +62,7 @@ def invariant(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     The coldest body only gains entropy from processes and conduction.  Where T <= m < T_e, heat
     exchange brings at least lam*(T_e/m - 1) >= 0, so T never falls below its start and m.
     """
-    above = [greater(condition.tree) for condition in conditions(iphs.model)]
+    above = [greater(condition.tree) for condition in iphs.circuit.conditions]
     floors = {c.left.name: c.right for c in above if c.op == ">" and isinstance(c.left, Sym)}
     for placed, port in iphs.circuit.of(Body):
         exchanges = [p for _, p in iphs.circuit.of(Exchange) if p.body == placed.element]

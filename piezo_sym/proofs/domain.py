@@ -21,7 +21,6 @@ from piezo_sym.proofs.laws import branch_questions, value_questions
 from piezo_sym.proofs.obligations import NEVER, Obligation, Question
 from piezo_sym.proofs.solvers import SolverLike
 from piezo_sym.spec.elements.ports import Body, Coupling
-from piezo_sym.spec.tables import conditions
 
 #: Of a longer divisor only the beginning is shown.
 MOST_TEXT = 60
@@ -32,7 +31,7 @@ def domain_defined(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]
 
     Conditions that always have a value come first, as the order of conditions is free.
     """
-    trees = [condition.tree for condition in conditions(iphs.model)]
+    trees = [condition.tree for condition in iphs.circuit.conditions]
     ties = replace(assumptions, where=tuple(c for c in assumptions.where if c.op == "="))
 
     def questions() -> Iterator[Question]:

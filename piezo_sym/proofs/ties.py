@@ -21,7 +21,6 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.tables import conditions
 
 
 def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
@@ -48,7 +47,7 @@ def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
     A current phi/L takes every value if L > 0 and no condition has phi.  The current of a softening
     or a moving inductor may not, nor may temperatures.
     """
-    trees = [condition.tree for condition in conditions(iphs.model)]
+    trees = [condition.tree for condition in iphs.circuit.conditions]
     used = {name for tree in trees for name in names(tree)}
     states = {slot.label for slot in iphs.system.states}
     for _, store in iphs.circuit.of(Storage):

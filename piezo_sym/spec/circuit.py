@@ -28,7 +28,15 @@ from piezo_sym.spec.elements.ports import (
 )
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.names import fresh
-from piezo_sym.spec.tables import bank_of, banks, in_words, temperatures
+from piezo_sym.spec.tables import (
+    Condition,
+    bank_of,
+    banks,
+    conditions,
+    in_words,
+    lane_parameters,
+    temperatures,
+)
 
 #: How the last node of a lane in a chain ends (no spec can write the colon).
 LAST = ":last"
@@ -81,20 +89,39 @@ class Circuit:
         changed = tuple(replace(p, port=port) if p is placed else p for p in self.ports)
         return replace(self, ports=changed)
 
+    @cached_property
+    def by_element(self) -> Mapping[str, tuple[Port, ...]]:
+        """The ports of each element that has any."""
+        found: dict[str, list[Port]] = {}
+        for placed in self.ports:
+            found.setdefault(placed.element, []).append(placed.port)
+        return {element: tuple(ports) for element, ports in found.items()}
+
     def body(self, element: str) -> Body:
         """Return the body of a thermal mass."""
-        return self._bodies[element]
+        return self.bodies[element]
+
+    @cached_property
+    def conditions(self) -> tuple[Condition, ...]:
+        """The domain."""
+        return conditions(self.model)
+
+    @cached_property
+    def lane_parameters(self) -> Mapping[str, str]:
+        """The bank of each parameter that one bank alone uses."""
+        return lane_parameters(self.model, self.conditions)
 
     @cached_property
     def pumped(self) -> dict[str, Branch]:
         """The branch of each body that a coupling carries entropy into or out of, by element."""
         pairs = (p.second for _, p in self.of(Coupling) if p.second_domain == THERMAL)
         nodes = {node for pair in pairs for node in pair}
-        branches = {name: (body_node(name), THERMAL.reference) for name in self._bodies}
+        branches = {name: (body_node(name), THERMAL.reference) for name in self.bodies}
         return {name: branch for name, branch in branches.items() if branch[0] in nodes}
 
     @cached_property
-    def _bodies(self) -> dict[str, Body]:
+    def bodies(self) -> dict[str, Body]:
+        """The bodies by element."""
         return {placed.element: port for placed, port in self.of(Body)}
 
 

@@ -4,7 +4,7 @@ Input: the tables of a spec.  Output: its states, banks, bodies, laws and condit
 order.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
@@ -153,9 +153,9 @@ def _width_tests(law: Node) -> Iterator[Cmp]:
                 yield Cmp(">=", width, ZERO)
 
 
-def orders(spec: Tables) -> Iterator[Condition]:
-    """Yield the conditions that the knots of each table in the spec increase."""
-    parts: list[LawField | Condition] = [*laws(spec), *conditions(spec)]
+def orders(spec: Tables, domain: Iterable[Condition]) -> Iterator[Condition]:
+    """Yield the conditions that the knots of each table in the spec and its domain increase."""
+    parts: list[LawField | Condition] = [*laws(spec), *domain]
     places = [*((part.where, part.tree) for part in parts), *initial_laws(spec)]
     tests = (Condition(where, order) for where, tree in places for order in increasing(tree))
     yield from dict.fromkeys(tests)
@@ -174,8 +174,11 @@ def condition_text(condition: Cmp) -> str:
     return write_comparison(condition, SPEC)
 
 
-def lane_parameters(spec: Tables) -> dict[str, str]:
-    """Return the bank of each parameter that one bank alone uses: it may have a value per lane."""
+def lane_parameters(spec: Tables, domain: Iterable[Condition]) -> dict[str, str]:
+    """Return the bank of each parameter that one bank alone uses: it may have a value per lane.
+
+    `domain` is the spec's own, from `conditions`.
+    """
     users: dict[str, set[str | None]] = {}
     owners, lanes = bank_of(spec), bank_states(spec)
     for law in laws(spec):
@@ -187,7 +190,7 @@ def lane_parameters(spec: Tables) -> dict[str, str]:
     single = {word: next(iter(owner)) for word, owner in users.items() if len(owner) == 1}
     candidates = {word: bank for word in spec.parameters if (bank := single.get(word))}
     lanes |= candidates
-    groups = [names(condition.tree) for condition in conditions(spec)]
+    groups = [names(condition.tree) for condition in domain]
     mixed = {n for g in groups if len({lanes[n] for n in g if n in lanes}) > 1 for n in g}
     return {word: bank for word, bank in candidates.items() if word not in mixed}
 

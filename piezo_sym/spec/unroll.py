@@ -14,7 +14,7 @@ from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.elements.ports import Branch
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.rename import Renaming
-from piezo_sym.spec.tables import bank_of, bank_states, banks, lane_parameters
+from piezo_sym.spec.tables import bank_of, bank_states, banks, conditions, lane_parameters
 
 
 def unroll(model: Model, counts: Mapping[str, int]) -> Model:
@@ -30,7 +30,7 @@ def unroll(model: Model, counts: Mapping[str, int]) -> Model:
     """
     _check_counts(model, counts)
     sizes, owners, inner = {**banks(model), **counts}, bank_of(model), _cell_nodes(model)
-    listed, values = lane_parameters(model), model.parameters.items()
+    listed, values = lane_parameters(model, conditions(model)), model.parameters.items()
     of_lanes = bank_states(model) | {n: listed[n] for n, p in values if isinstance(p.value, tuple)}
     lanes = {symbol: sizes[bank] for symbol, bank in of_lanes.items()}
 

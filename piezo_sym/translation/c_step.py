@@ -28,9 +28,9 @@ from functools import partial
 from typing import final
 
 from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Storage
-from piezo_sym.spec.model import Model
-from piezo_sym.spec.tables import banks, lane_parameters
+from piezo_sym.spec.tables import banks
 from piezo_sym.translation.c_function import NOT_COMPARED, CFunction, helper_is
 from piezo_sym.translation.c_reader import add_helper
 from piezo_sym.translation.c_scope import Branch, File, Scope, kind_of
@@ -99,16 +99,17 @@ def read_step(text: str, known: Proved) -> dict[Key, Value]:
     lines = {line: name for line, name in lines.items() if line in text}
     macros = MACROS.replace("{functions}", "".join(lines))
     bends = BENDS in text
-    parts = [*_data(text, known.iphs.model), *_path_table(known), *([BENDS] if bends else [])]
+    parts = [*_data(text, known.iphs.circuit), *_path_table(known), *([BENDS] if bends else [])]
     module = python_of(text, known.iphs.model.name, macros, parts)
     calls = {"chosen": "choice"} | {f"{name}_of": _LIBRARY[name] for name in lines.values()}
     file = File(known, "real", "reals", _SIGNATURES, calls, _RESULTS)
     return _Step(module, file).rows(bends=bends)
 
 
-def _data(text: str, model: Model) -> list[str]:
+def _data(text: str, circuit: Circuit) -> list[str]:
     """Return the record of parameters and what fills it, with the names that the text has."""
-    own, counts = lane_parameters(model), {f"{bank}_count": "" for bank in banks(model)}
+    model, own = circuit.model, circuit.lane_parameters
+    counts = {f"{bank}_count": "" for bank in banks(model)}
     fields, places, given = "", "", ""
     for count in counts:
         places += f"    to->{count} = from->{count};\n"

@@ -25,7 +25,6 @@ from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.network import port_order
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import Body, DissipativePort, Exchange, HeatInput, Storage
-from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import spelled
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
@@ -37,7 +36,7 @@ Stop: TypeAlias = tuple[Placed, Storage, DissipativePort]
 
 def proved_step(iphs: IPHS) -> Proved:
     """Return a stage of a system in normal form."""
-    read, given = SystemReader(iphs), [condition.tree for condition in conditions(iphs.model)]
+    read, given = SystemReader(iphs), [condition.tree for condition in iphs.circuit.conditions]
     means = dict(_means(read))
     slots = {"integrands": tuple(slot for slot, _ in means.values())}
     values: dict[Key, Value] = {

@@ -15,7 +15,7 @@ from itertools import chain
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.tables import banks, condition_text, conditions, lane_parameters
+from piezo_sym.spec.tables import banks, condition_text
 from piezo_sym.translation.field import NotShownError
 from piezo_sym.translation.known import Proved
 from piezo_sym.translation.numpy_reader import ARGUMENTS
@@ -108,7 +108,7 @@ def _is_text(node: ast.stmt) -> bool:
 
 def _fixed(iphs: IPHS) -> list[str]:
     """Return what stands in every module, and the parameters of this one, by statements."""
-    slots, lanes, model = iphs.system.states, lane_parameters(iphs.model), iphs.model
+    slots, lanes, model = iphs.system.states, iphs.circuit.lane_parameters, iphs.model
     size = [str(sum(s.bank is None for s in slots))]
     size += [f"p.{s.bank}_count" for s in slots if s.bank]
     found = _statements(_HELPERS.format(size=" + ".join(size), inputs=len(model.inputs)))
@@ -155,7 +155,7 @@ def _rows(node: ast.expr) -> object:
 def _tables(known: Proved) -> dict[str, object]:
     iphs, slots = known.iphs, known.slots
     model, system = iphs.model, iphs.system
-    owners = lane_parameters(model)
+    owners = iphs.circuit.lane_parameters
     return {
         "NAME": model.name,
         "SPEC_SHA256": model.sha256,
@@ -168,5 +168,7 @@ def _tables(known: Proved) -> dict[str, object]:
         "ELEMENTS": tuple((s.label, s.bank) for s in slots["elements"]),
         "PARAMETERS": tuple((name, owners.get(name)) for name in model.parameters),
         "BANKS": tuple(banks(model)),
-        "DOMAIN": tuple((condition_text(c.tree), "=" not in c.tree.op) for c in conditions(model)),
+        "DOMAIN": tuple(
+            (condition_text(c.tree), "=" not in c.tree.op) for c in iphs.circuit.conditions
+        ),
     }

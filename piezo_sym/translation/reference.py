@@ -17,7 +17,6 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.elements import element_rows, follower_rates, in_words
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.tables import conditions
 from piezo_sym.translation.change import across, derivative, in_exponentials
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import ALL, LEAST, SAME, Key, Proved
@@ -29,7 +28,7 @@ from piezo_sym.translation.zero import is_zero
 def proved(iphs: IPHS) -> Proved:
     """Return a system in normal form."""
     read = SystemReader(iphs)
-    domain = read.assume(condition.tree for condition in conditions(iphs.model))
+    domain = read.assume(condition.tree for condition in iphs.circuit.conditions)
     read.assume_temperatures()
     slots = _slots(iphs)
     elements = tuple(elements_of(read))
@@ -45,7 +44,7 @@ def _slots(iphs: IPHS) -> dict[str, tuple[Slot, ...]]:
     found = dict.fromkeys(("initial_state", "rhs", "jacobian"), rates)
     found |= {"outputs": ports, "supply": ports, "heat": heats, "entropy_production": heats}
     found["temperatures"] = tuple(Slot(placed.element) for placed, _ in iphs.circuit.of(Body))
-    found["margins"] = tuple(Slot(str(n)) for n, _ in enumerate(conditions(iphs.model)))
+    found["margins"] = tuple(Slot(str(n)) for n, _ in enumerate(iphs.circuit.conditions))
     return found | dict.fromkeys(("energy", "entropy"), (Slot(""),))
 
 
@@ -103,7 +102,7 @@ def _values(
 ) -> Iterator[tuple[Key, Value]]:
     """Yield the rows of every function."""
     iphs, field = read.iphs, read.field
-    yield from margins_of(read.margins(condition.tree for condition in conditions(iphs.model)))
+    yield from margins_of(read.margins(condition.tree for condition in iphs.circuit.conditions))
     listed, system = of_system(read), iphs.system
     produced = (r * z for r, z in zip(system.R, system.z, strict=True))
     _tie(iphs, "sigma", zip(produced, system.processes, strict=True), system.sigma)

@@ -20,7 +20,7 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Num, names, walk
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.tables import bank_states, conditions, lane_parameters, laws, states
+from piezo_sym.spec.tables import bank_states, laws, states
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import call, power, raised, size_of
 from piezo_sym.translation.signs import assume, compare, on_path, reading
@@ -44,7 +44,7 @@ class SystemReader:
     def __init__(self, iphs: IPHS) -> None:
         self.iphs, self.field = iphs, GeneratorField()
         model, system = iphs.model, iphs.system
-        self.banks = {**lane_parameters(model), **bank_states(model)}
+        self.banks = {**iphs.circuit.lane_parameters, **bank_states(model)}
         names = [*model.parameters, *model.inputs, *states(model)]
         symbols = {name: iphs.symbols[name] for name in names}
         if len({*iphs.symbols.symbols.values()}) < len(iphs.symbols.symbols):
@@ -201,7 +201,7 @@ def rounded(iphs: IPHS) -> Iterator[tuple[float, Fraction]]:
     model = iphs.model
     trees = [law.tree for law in laws(model)]
     trees += [energy.law for energy in iphs.energies]
-    trees += [side for c in conditions(model) for side in (c.tree.left, c.tree.right)]
+    trees += [side for c in iphs.circuit.conditions for side in (c.tree.left, c.tree.right)]
     starts = (s if isinstance(s, tuple) else (s,) for s in model.initial.values())
     trees += [parse_law(part, "initial") for s in starts for part in s if isinstance(part, str)]
     for tree in trees:

@@ -135,7 +135,11 @@ def test_banks_bodies_and_temperatures(model):
 
 
 def test_parameters_that_may_differ_by_lane(model):
-    assert lane_parameters(model) == {"L": "hysteron", "rho": "hysteron", "i_0": "hysteron"}
+    assert lane_parameters(model, conditions(model)) == {
+        "L": "hysteron",
+        "rho": "hysteron",
+        "i_0": "hysteron",
+    }
 
 
 def test_the_domain_is_what_is_assumed_and_what_kinds_need(model):

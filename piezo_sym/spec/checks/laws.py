@@ -98,12 +98,13 @@ def check_laws(spec: Tables) -> None:
                 raise SpecError(what, law.where, "a body named", remedy)
             _check_letters(law, words, meanings(spec, law, hot))
     _check_initial(spec)
-    for order in orders(spec):
+    domain = conditions(spec)
+    for order in orders(spec, domain):
         _check_words(spec, order.tree, f"a knot of a table in {order.where}", (), spec.parameters)
     hot_names = (*temperatures(spec), *(f"T_{body}" for body in bodies(spec)))
     words = dict.fromkeys([*spec.parameters, *spec.inputs, *states(spec), *hot_names])
     lanes = bank_states(spec)
-    for condition in conditions(spec):
+    for condition in domain:
         _check_words(spec, condition.tree, condition.where, (), words)
         _check_banks(condition, lanes)
         _check_temperature(spec, condition)

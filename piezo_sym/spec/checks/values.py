@@ -34,10 +34,11 @@ Values: TypeAlias = tuple[Value, ...]
 
 def check_values(spec: Tables) -> None:
     """Check lists against the sizes of banks, then knots and the domain, lane by lane."""
-    _check_lists(spec)
+    domain = conditions(spec)
+    _check_lists(spec, domain)
     lanes: dict[str, Values] = {n: (Fraction(entry.si),) for n, entry in spec.inputs.items()}
     lanes |= {name: tuple(map(Fraction, p.lanes)) for name, p in spec.parameters.items()}
-    for order in orders(spec):
+    for order in orders(spec, domain):
         _check_condition(
             order, lanes, "the knots of a table do not increase", remedy="sort the knots"
         )
@@ -48,7 +49,7 @@ def check_values(spec: Tables) -> None:
         law = next(port.law for port in ports if isinstance(port, Body))
         values = _in_lane(0, names(law), lanes)
         lanes[symbol] = (_value(law, values, f"elements.{body}.{field}"),)
-    for condition in (*conditions(spec), *_start_conditions(spec)):
+    for condition in (*domain, *_start_conditions(spec)):
         _check_condition(
             condition, lanes, remedy=f"change a value or the domain{_law(condition, spec)}"
         )
@@ -56,7 +57,7 @@ def check_values(spec: Tables) -> None:
 
 def are_all_margins(spec: Tables) -> bool:
     """Return whether the values of a spec have to satisfy the conditions of its domain alone."""
-    ordered = any(names(condition.tree) for condition in orders(spec))
+    ordered = any(names(condition.tree) for condition in orders(spec, conditions(spec)))
     return not ordered and not any(_start_conditions(spec))
 
 
@@ -88,8 +89,8 @@ def _count(words: Iterable[str], lanes: Mapping[str, Values]) -> int:
     return max((len(lanes[word]) for word in words), default=1)
 
 
-def _check_lists(spec: Tables) -> None:
-    sizes, owners = banks(spec), lane_parameters(spec)
+def _check_lists(spec: Tables, domain: Iterable[Condition]) -> None:
+    sizes, owners = banks(spec), lane_parameters(spec, domain)
     for name, parameter in spec.parameters.items():
         if not isinstance(parameter.value, tuple):
             continue
