@@ -35,7 +35,7 @@ def verify(iphs: IPHS) -> Report:
         all states, inputs and parameters in the domain and for every size of every bank, and only
         after an attack by numbers on the generated module found no contradiction; REFUTED comes
         with a witness; all else is OPEN, and says why.  It ends within 30 s for ten elements: what
-        is not decided then is OPEN.  A row that takes a quarter of the time that is left comes
+        is not decided then is OPEN.  A row that takes an eighth of the time that is left comes
         after all others.
 
     Raises

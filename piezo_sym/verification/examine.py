@@ -28,7 +28,7 @@ ATTACKED = frozenset(
     | {"invariant"}
 )
 #: Of the time that is left, a row may take this part before all others are decided.
-SHARE = 0.25
+SHARE = 0.125
 PROGRAM = Row("program", "", STATEMENT, Verdict.OPEN)
 
 
