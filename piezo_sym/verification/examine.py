@@ -29,6 +29,7 @@ ATTACKED = frozenset(
 )
 #: Of the time that is left, a row may take this part before all others are decided.
 SHARE = 0.125
+NOTHING: Mapping[int, Any] = MappingProxyType({})
 PROGRAM = Row("program", "", STATEMENT, Verdict.OPEN)
 
 
@@ -36,7 +37,8 @@ def examine(
     iphs: IPHS,
     points: int = POINTS,
     apart: Callable[[Iterator[Any]], AbstractContextManager[Iterator[Any]]] = nullcontext,
-    late: Mapping[int, int] = MappingProxyType({}),
+    late: Mapping[int, int] = NOTHING,
+    known: Mapping[int, Row] = NOTHING,
 ) -> Iterator[Template | Report | Progress]:
     """Yield the texts of a system's module, its rows, all open, and each verdict once it is final.
 
@@ -44,7 +46,7 @@ def examine(
     ----------
     points : how many points the attack takes; fewer in tests of many small networks alone.
     apart : where printed texts are read back: in turn, or `beside` proofs and attacks.
-    late : how often rows have taken more than their share; see `Request`.
+    late, known : how often rows have taken more than their share, and those decided; see `Request`.
     """
     made = template_of(iphs)
     yield made
@@ -58,8 +60,10 @@ def examine(
         work = _Work(iphs, report, texts[".py"], points, (system, step))
         again = [n for n, times in late.items() if times == 1]
         rest = [n for n in range(len(report.obligations)) if n not in late]
-        yield from work.decided(rest, SHARE)
-        if work.program not in late:
+        waiting = {*work.prover.resting(late)}
+        sure = {n: row for n, row in known.items() if n not in waiting}
+        yield from work.decided(rest, SHARE, sure)
+        if work.program not in {*late, *known}:
             yield from work.read_back(0.5 if again else 1.0)
         for number in sorted(again):
             if number == work.program:
@@ -88,25 +92,31 @@ class _Work:
     ) -> None:
         self.iphs, self.points, self.read = iphs, points, read
         self.prover, self.program = Prover(iphs, report), len(report.rows) - 1
-        self._text, self._done = text, dict[int, Row]()
+        self._text, self._done, self._proved = text, dict[int, Row](), dict[int, Row]()
 
     def begun(self, number: int | None, part: float) -> Progress:
         """Return what has been decided since this was asked before, and what is done next."""
-        done, self._done = self._done, {}
-        return Progress(done, number, part)
+        done, proved, self._done, self._proved = self._done, self._proved, {}, {}
+        return Progress(done, number, part, proved)
 
     def after(self, late: int, left_out: Iterable[int]) -> list[int]:
         """Return a row and those that rest on it, without those that are left out."""
         return [n for n in self.prover.resting((late,)) if n not in {*left_out}]
 
-    def decided(self, numbers: Iterable[int], part: float) -> Iterator[Progress]:
-        """Decide rows and attack those that are proved; a row that was attacked stays as it is."""
+    def decided(
+        self, numbers: Iterable[int], part: float, known: Mapping[int, Row] = NOTHING
+    ) -> Iterator[Progress]:
+        """Decide rows that are not known, and attack what is proved and was not attacked."""
         claims = list[int]()
         for number in numbers:
-            yield self.begun(number, part)
-            row = self.prover.decide(number)
-            if row.id in ATTACKED and row.verdict is Verdict.PROVED:
+            if number in known:
+                self.prover.rows[number] = row = known[number]
+            else:
+                yield self.begun(number, part)
+                row = self.prover.decide(number)
+            if row.id in ATTACKED and row.verdict is Verdict.PROVED and not row.points:
                 claims.append(number)
+                self._proved[number] = row
             else:
                 self._done[number] = row
         if not claims:

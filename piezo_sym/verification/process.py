@@ -122,7 +122,8 @@ def _report(subject: IPHS | Model, model: Model, texts: Future[Template]) -> Rep
     record, ends = Record(model.name, limit), monotonic() + limit
     while True:
         stop: Stop | PiezoError | None = None
-        for message in messages(_examiner(), Request(subject, ends - monotonic(), record.late)):
+        request = Request(subject, ends - monotonic(), record.late, record.known)
+        for message in messages(_examiner(), request):
             if isinstance(message, Stop | PiezoError):
                 stop = message
             elif not isinstance(message, Template):
@@ -170,7 +171,7 @@ def answer(request: Request) -> Iterator[object]:
         iphs = subject if isinstance(subject, IPHS) else derive(subject)
         several = len(iphs.model.flatten().elements) >= FEWEST_BESIDE and (os.cpu_count() or 1) > 1
         apart = beside if several else nullcontext
-        yield from examine(iphs, apart=apart, late=request.late)
+        yield from examine(iphs, apart=apart, late=request.late, known=request.known)
     except PiezoError as error:
         yield error
     except EOFError:

@@ -23,11 +23,13 @@ class Request:
     seconds : after which the process is stopped.
     late : how often each row, by its number, has taken more than its share: once, and it comes
         last; twice, and it is left out.
+    known : rows that it has decided before, those that are proved perhaps not attacked.
     """
 
     subject: IPHS | Model
     seconds: float
     late: Mapping[int, int] = field(default_factory=dict)
+    known: Mapping[int, Row] = field(default_factory=dict)
 
 
 @final
@@ -40,11 +42,13 @@ class Progress:
     rows : verdicts by their number in the report; those beyond its rows are added to it.
     next : the number of the row that is looked at next, or None.
     part : of the time that is left, which that row may take.
+    proved : rows that are to be attacked: nothing is said of them yet.
     """
 
     rows: Mapping[int, Row]
     next: int | None = None
     part: float = 1.0
+    proved: Mapping[int, Row] = field(default_factory=dict)
 
 
 @final

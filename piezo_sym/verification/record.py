@@ -26,12 +26,13 @@ class Record:
     ----------
     model : its name.
     limit : seconds that it may take in all.
-    late : how often each row has taken more than its share; see `Request`.
+    late, known : for another `Request`.
     """
 
     model: str
     limit: float
     late: dict[int, int] = field(default_factory=dict)
+    known: dict[int, Row] = field(default_factory=dict)
     _stated: Report | None = None
     _rows: dict[int, Row] = field(default_factory=dict)
     _next: int | None = None
@@ -45,6 +46,9 @@ class Record:
         else:
             self._rows |= message.rows
             self._next = message.next
+            self.known |= {**message.proved, **message.rows}
+            for number in message.rows:
+                self.late.pop(number, None)
 
     def goes_on(self, stop: Stop) -> bool:
         """Return whether a system is to be examined again after an early end."""
@@ -53,8 +57,7 @@ class Record:
             return False
         self._why[number] = self._stop
         self.late[number] = self.late.get(number, 0) + 1
-        left = (n for n, times in self.late.items() if times == 1 and n not in self._rows)
-        return not stop.last and any(True for _ in left)
+        return not stop.last and 1 in self.late.values()
 
     def report(self) -> Report:
         """Return the report, the rows that are not decided open."""

@@ -1,12 +1,14 @@
 """A row that takes all the time leaves the others theirs, and is the one that is named."""
 
+from dataclasses import replace
+
 import pytest
 
 from piezo_sym import load
 from piezo_sym.errors import ProofError
 from piezo_sym.processes import Worker
 from piezo_sym.proofs import Verdict
-from piezo_sym.verification import process
+from piezo_sym.verification import examine, process
 from piezo_sym.verification.examine import ATTACKED, examined
 from piezo_sym.verification.process import answer, examined_model
 from piezo_sym.verification.protocol import OVERDUE, Progress, Request
@@ -147,3 +149,35 @@ def test_a_row_that_is_left_out_is_open_and_so_are_those_that_rest_on_it(found):
     without = verdicts(examined(answer(Request(load("piezo_stack"), 60.0, {number: 2}))))
     assert {without[key] for key in without if key[0] in {"temperature", "sigma"}} == {Verdict.OPEN}
     assert without[DAMPER] is Verdict.PROVED
+
+
+def test_rows_that_are_known_are_not_decided_again(found, monkeypatch):
+    """They are attacked, unless they were."""
+    record = Record("piezo_stack", 28.0)
+    for message in found[1:]:
+        if isinstance(message, Progress) and record._next is None and len(record.known) > 1:
+            break  # all are decided, none is attacked
+        record.take(message)
+    wanted = examined(found).rows
+    decided = {n for n, row in enumerate(wanted) if row.id not in {"units", "program"}}
+    assert record.known.keys() == decided
+    assert not any(row.points for row in record.known.values())
+    monkeypatch.setattr(examine.Prover, "decide", None)
+    again = Request(load("piezo_stack"), 60.0, known=record.known)
+    assert examined(answer(again)).rows == wanted
+    monkeypatch.undo()
+    number = [*verdicts(examined(found))].index(DAMPER)
+    again = Request(load("piezo_stack"), 60.0, {number: 2}, record.known)
+    without = verdicts(examined(answer(again)))  # what rests on a row that is not is not known
+    assert {without[key] for key in without if key[0] in {"sigma", "exergy"}} == {Verdict.OPEN}
+    monkeypatch.setattr(examine, "Hunt", None)
+    again = Request(load("piezo_stack"), 60.0, known=dict(enumerate(wanted)))
+    assert examined(answer(again)).rows[:-1] == wanted[:-1]  # the last is not sent again
+
+
+def test_a_row_that_is_proved_alone_is_open(found):
+    """Rows to be attacked are sent for another request, and not as verdicts."""
+    sent = [replace(m, rows={}) if isinstance(m, Progress) else m for m in found]
+    assert any(m.proved for m in sent if isinstance(m, Progress))
+    left = {row.verdict for row in examined(sent).rows if row.id != "units"}
+    assert left == {Verdict.OPEN}
