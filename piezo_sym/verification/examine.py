@@ -42,6 +42,8 @@ def examine(
 ) -> Iterator[Template | Report | Progress]:
     """Yield the texts of a system's module, its rows, all open, and each verdict once it is final.
 
+    Obligations follow the rows once all are decided.
+
     Parameters
     ----------
     points : how many points the attack takes; fewer in tests of many small networks alone.
@@ -56,7 +58,7 @@ def examine(
     with of_system as system, of_step as step:
         report = stated(iphs)
         report = replace(report, rows=(*report.rows, PROGRAM))
-        yield report
+        yield replace(report, obligations=())  # they are sent with their queries, once made
         work = _Work(iphs, report, texts[".py"], points, (system, step))
         again = [n for n, times in late.items() if times == 1]
         rest = [n for n in range(len(report.obligations)) if n not in late]
@@ -90,7 +92,7 @@ class _Work:
     def __init__(
         self, iphs: IPHS, report: Report, text: str, points: int, read: Iterable[Iterator[Row]]
     ) -> None:
-        self.iphs, self.points, self.read = iphs, points, read
+        self.iphs, self.report, self.points, self.read = iphs, report, points, read
         self.prover, self.program = Prover(iphs, report), len(report.rows) - 1
         self._text, self._done, self._proved = text, dict[int, Row](), dict[int, Row]()
 
@@ -105,7 +107,7 @@ class _Work:
 
     def decided(
         self, numbers: Iterable[int], part: float, known: Mapping[int, Row] = NOTHING
-    ) -> Iterator[Progress]:
+    ) -> Iterator[Progress | Report]:
         """Decide rows that are not known, and attack what is proved and was not attacked."""
         claims = list[int]()
         for number in numbers:
@@ -119,9 +121,10 @@ class _Work:
                 self._proved[number] = row
             else:
                 self._done[number] = row
+        yield self.begun(None, 1.0)
+        yield self.report
         if not claims:
             return
-        yield self.begun(None, 1.0)
         keys = {n: (self.prover.rows[n].id, self.prover.rows[n].element) for n in claims}
         hunt = Hunt(self.iphs, module_from(self._text), tuple(keys.values()), self.points)
         hunt.search()

@@ -42,7 +42,7 @@ class Record:
     def take(self, message: Report | Progress) -> None:
         """Take note of all rows, which are open, or of verdicts on some."""
         if isinstance(message, Report):
-            self._stated = message
+            self._stated = message if message.obligations else self._stated or message
         else:
             self._rows |= message.rows
             self._next = message.next
