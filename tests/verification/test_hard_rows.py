@@ -57,6 +57,7 @@ def verdicts(report):
     return {(row.id, row.element): row.verdict for row in report.rows}
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("stage", ["proving", "attacking"])
 def test_the_others_are_decided(worker, stage):
     row = "(obligation.id, obligation.element)" if stage == "proving" else "row"
@@ -74,6 +75,7 @@ def test_the_others_are_decided(worker, stage):
         report.raise_if_not_proved()
 
 
+@pytest.mark.long
 def test_of_two_hard_rows_each_is_named(worker):
     worker(attacking=f"row in {(DAMPER, HYSTERON)} and {ENDS}")
     report = examined_model(load("piezo_stack"))
