@@ -47,7 +47,7 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False, lanes: int = 0) -> 
             "stage_weight": b,
             "stage_start": [_at(part, mp.mpf(0)) for part in lagrange],
             "stage_end": [_at(part, mp.mpf(1)) for part in lagrange],
-            "stage_last": _last(c, b, 1),
+            "stage_last": [_last(c, b, 1), _last(c, b, 2)],
             "stage_lead": [part[-1] for part in lagrange],
             "along": [part[1:] for part in reach],
             "stage_reach": a.tolist(),

@@ -1,10 +1,12 @@
 """What rtol means: the largest error of a run, in the largest magnitude of each state, is about it.
 
-Reference: linear chains of masses, whose motion is a matrix exponential; heat does not act back.
+Reference: linear chains of masses, whose motion is a matrix exponential; and a mass with steep
+friction by the method of Dormand and Prince, its equations typed by hand.  Heat does not act back.
 """
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from piezo_sym import simulate, sine
@@ -110,3 +112,49 @@ def test_nobody_pays_for_much_more_than_rtol():
         assert len(found) >= 3
         assert max(found) <= 10
         assert 1 / 30 <= np.median(found) <= 3
+
+
+STEEP = """
+[model]
+name = "steep"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+k = { value = 100.0, unit = "N/m" }
+F_c = { value = 1.0, unit = "N" }
+w = { value = 0.02, unit = "m/s" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[domain]
+assume = ["F_c >= 0", "w > 0"]
+[elements]
+block = { kind = "mass", at = "a", mass = "m", state = "p" }
+spring = { kind = "spring", between = ["a", "wall"], stiffness = "k", state = "q" }
+friction = { kind = "damper", between = ["a", "wall"], force = "F_c*tanh(v/w)", heats = "body" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+"""
+#: Mass, stiffness, friction, its width, and the spring's length at the start, such that at some
+#: rtol a step that looks smooth at its stages goes over the steep part, or ends in it.
+FRICTIONS = (
+    (1.0, 100.0, 1.0, 0.005, 0.1),
+    (1.0, 100.0, 1.0, 0.1, 0.1),
+    (0.208, 344.0, 0.31, 0.0757, 0.46),
+    (0.202, 64.0, 0.185, 0.0157, 0.0335),
+)
+
+
+@pytest.mark.parametrize("friction", FRICTIONS)
+def test_no_step_misses_a_steep_part_of_a_law(friction):
+    m, k, F_c, w, q = friction
+
+    def rates(_, x):
+        return x[1] / m, -k * x[0] - F_c * np.tanh(x[1] / m / w)
+
+    times = np.linspace(0.0, 1.0, 21)
+    exactly = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-16, "max_step": 2e-3}
+    wanted = solve_ivp(rates, (0.0, 1.0), (q, 0.0), t_eval=times, **exactly).y
+    given = {"m": m, "k": k, "F_c": F_c, "w": w}
+    for rtol in (*RTOLS, 1e-10):
+        options = {"duration": 1.0, "times": times, "parameters": given, "initial": {"q": q}}
+        run = simulate(parse(STEEP), rtol=rtol, **options)
+        parts = np.abs(run[["q", "p"]].to_array() - wanted) / np.abs(wanted).max(axis=1)[:, None]
+        assert parts.max() <= 10 * rtol, rtol

@@ -54,7 +54,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(end_branch, m->branches);
     PLACE(part, m->booked);
     PLACE(some_rate, m->n);
-    PLACE(some_share, m->n);
+    PLACE(some_left, m->n);
     PLACE(some_side, m->branches);
     PLACE(some_rows, m->booked);
     PLACE(some_margin, MODEL(limits));

@@ -35,6 +35,17 @@
 #define SMOOTH(part) (part)
 #define PULL(z) (1e-2 * (z) * (z))
 #endif
+/*
+ * What is left of a series that does not decay as SMOOTH takes it to, as near a steep part of a law.
+ * GEOMETRIC: as much less, over s more terms, as the square of the next term's ratio to the last two.
+ * LOCAL: of a misfit whose term of order s + 1 is as large as that of order s, since the rate turns
+ * between two stages.  If the last term is ONE_OF times the misfit, or more, its series goes on.
+ */
+#define GEOMETRIC 0.5
+#define LOCAL 0.05
+#define ONE_OF 3.0
+/* From the ratio of these two terms: 0 up to 0.6, 1 from 1 on. */
+#define TURNS(ratio) largest_of(least(2.5 * (ratio) - 1.5, wide(1.0)), zero)
 /* A state is stiff if the equations reduce its misfit by more than this factor, twice in a row. */
 #define REDUCED 2.5
 /* Factor on errors of steps that contain kinks, whose errors add up over a run. */
@@ -52,23 +63,36 @@ static inline real further(real a, real b)
     return chosen(first, a, b);
 }
 
+/* What is left of misfits at both ends if their series decays slowly; by its last term, and that before. */
+static inline real MODEL(slow_part)(real low, real high, real last, real before)
+{
+    const real tiny = 1e-300 + zero, misfit = largest_of(size_of(low), size_of(high));
+    const real next = size_of(STAGES % 2 ? high - low : high + low) + tiny;
+    const real after = size_of(STAGES % 2 ? high + low : high - low);
+    const real ratio = least(misfit / (largest_of(size_of(last), size_of(before)) + tiny), wide(1.0));
+    const real sudden = least(ONE_OF * misfit / (size_of(last) + tiny), wide(1.0));
+    return largest_of(GEOMETRIC * ratio * ratio, LOCAL * TURNS(after / next) * sudden);
+}
+
 /*
- * The misfits of some states' rates in a step times `gamma`, in some_rate; and relative to the change of
- * each rate over the step, in some_share. Where the part `series` is 0, their series says nothing.
+ * The misfits of some states' rates in a step times `gamma`, in some_rate; and the parts of them that are
+ * left at the end, by their series, in some_left. Where `series` is 0, it says nothing.
  */
 static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long first, long end)
 {
     const long n = b->m.n;
     const real *const rates = b->m.rates, *const begins = b->rate, *const ends = b->end_rate;
-    real *restrict const shares = b->some_share, *restrict const found = b->some_rate;
+    real *restrict const left = b->some_left, *restrict const found = b->some_rate;
 #pragma omp simd
     for (long k = first; k < end; ++k) {
-        real low = -begins[k], high = -ends[k], mean = zero, last = zero, most = 1e-300 + zero;
+        real low = -begins[k], high = -ends[k], mean = zero, last = zero, before = zero;
+        real most = 1e-300 + zero;
         for (long j = 0; j < STAGES; ++j) {
             const real rate = rates[j * n + k];
             low += stage_start[j] * rate;
             high += stage_end[j] * rate;
-            last += stage_last[j] * rate;
+            last += stage_last[0][j] * rate;
+            before += stage_last[1][j] * rate;
             mean += stage_weight[j] * rate;
         }
         for (long j = 0; j < STAGES; ++j)
@@ -76,7 +100,9 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long 
         const real smooth = least(size_of(last) / most, wide(1.0));
         const real next = STAGES > 2 ? (real)(series * last * LIKE_THE_LAST(smooth)) : (real)zero;
         const real misfit = further(further(low, high), next);
-        shares[k] = least(size_of(misfit) / most, wide(1.0));
+        const real share = least(size_of(misfit) / most, wide(1.0));
+        const real slow = MODEL(slow_part)(low, high, last, before);
+        left[k] = STAGES > 3 ? (real)largest_of(SMOOTH(share), series * slow) : (real)SMOOTH(share);
         found[k] = gamma * misfit;
     }
 }
@@ -135,7 +161,7 @@ static real MODEL(error)(const MODEL(batch) *b, real h)
 #endif
     for (long k = 0; k < m->n; ++k) {
         const real fast = b->some_rate[k], z = largest_of(fast, pull);
-        const real left = least(SMOOTH(b->some_share[k]) + PULL(z), wide(1.0));
+        const real left = least(b->some_left[k] + PULL(z), wide(1.0));
         const real counts = chosen(m->over, wide(KINKS_WITHIN), largest_of(left, least_part));
         worst = largest_of(counts * once[k] * per_tolerance, worst);
     }

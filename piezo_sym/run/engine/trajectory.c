@@ -89,7 +89,7 @@ typedef struct {
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
-    real *some_rate, *some_share, *some_side, *some_rows, *some_margin, *some_inputs;
+    real *some_rate, *some_left, *some_side, *some_rows, *some_margin, *some_inputs;
     long sizes[SIZES];
 } MODEL(batch);
 

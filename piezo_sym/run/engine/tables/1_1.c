@@ -11,7 +11,9 @@ static const double stage_at[1] = {5.0e-1};
 static const double stage_weight[1] = {1.0};
 static const double stage_start[1] = {1.0};
 static const double stage_end[1] = {1.0};
-static const double stage_last[1] = {1.0};
+static const double stage_last[2][1] = {
+    {1.0},
+    {1.0}};
 static const double stage_lead[1] = {1.0};
 static const double along[1][1] = {
     {1.0}};

@@ -11,7 +11,9 @@ static const double stage_at[2] = {2.1132486540518712e-1, 7.8867513459481288e-1}
 static const double stage_weight[2] = {5.0e-1, 5.0e-1};
 static const double stage_start[2] = {1.3660254037844386, -3.6602540378443865e-1};
 static const double stage_end[2] = {-3.6602540378443865e-1, 1.3660254037844386};
-static const double stage_last[2] = {-8.6602540378443865e-1, 8.6602540378443865e-1};
+static const double stage_last[2][2] = {
+    {-8.6602540378443865e-1, 8.6602540378443865e-1},
+    {5.0e-1, 5.0e-1}};
 static const double stage_lead[2] = {-1.7320508075688773, 1.7320508075688773};
 static const double along[2][2] = {
     {1.3660254037844386, -8.6602540378443865e-1},
