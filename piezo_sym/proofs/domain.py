@@ -7,6 +7,7 @@ are not zero, and the reason to leave all rows open if the domain has no known p
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -22,6 +23,7 @@ from piezo_sym.proofs.obligations import NEVER, Obligation, Question
 from piezo_sym.proofs.solvers import SolverLike
 from piezo_sym.spec.elements.ports import Body, Coupling
 
+NOTHING: Mapping[str, Fraction] = MappingProxyType({})
 #: Of a longer divisor only the beginning is shown.
 MOST_TEXT = 60
 
@@ -99,8 +101,13 @@ def _all_inside(assumptions: Assumptions, points: tuple[Mapping[str, Value], ...
     return bool(points) and all(all_hold(conditions, point) for point in points)
 
 
-def spec_points(iphs: IPHS) -> tuple[dict[str, Value], ...]:
-    """Return the spec's own values in each lane of its banks; () if one of them has no value."""
+def spec_points(
+    iphs: IPHS, given: Mapping[str, Fraction] = NOTHING
+) -> tuple[dict[str, Value], ...]:
+    """Return the spec's own values in each lane of its banks; () if one of them has no value.
+
+    What is `given` replaces them; temperatures follow from the rest.
+    """
     model = iphs.model
     lists = {name: parameter.lanes for name, parameter in model.parameters.items()}
     sizes = [*map(len, lists.values()), *map(len, iphs.starts)]
@@ -111,10 +118,12 @@ def spec_points(iphs: IPHS) -> tuple[dict[str, Value], ...]:
                 name: Fraction(given[min(lane, len(given) - 1)]) for name, given in lists.items()
             }
             values |= {name: Fraction(entry.si) for name, entry in model.inputs.items()}
+            values |= given
             values |= {
                 slot.label: value_of(parts[min(lane, len(parts) - 1)], values)
                 for slot, parts in zip(iphs.system.states, iphs.starts, strict=True)
             }
+            values |= given
             for _, port in iphs.circuit.of(Body):
                 if values.keys() >= {*names(port.law)}:
                     values[port.temperature] = value_of(port.law, values)

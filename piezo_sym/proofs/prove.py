@@ -7,25 +7,24 @@ witness that was evaluated exactly in the law itself.  All else is OPEN, with th
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from fractions import Fraction
 
 import sympy as sp
 
 from piezo_sym.expressions.calculus import mul
-from piezo_sym.expressions.exact_eval import TooCloseError, all_hold, value_of
-from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.exact_eval import all_hold
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Domain, simple_counterexample
-from piezo_sym.proofs.continuity import jumps, neighbour_questions
+from piezo_sym.proofs.continuity import neighbour_questions
 from piezo_sym.proofs.domain import spec_points
 from piezo_sym.proofs.laws import branch_questions
-from piezo_sym.proofs.mending import JUMPS, mending
+from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
+from piezo_sym.proofs.refutation import Finding, beside_own_values, checked_model, refutation
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
-from piezo_sym.proofs.solvers import Answer, SolverLike, opinions
+from piezo_sym.proofs.solvers import SolverLike, opinions
 from piezo_sym.spec.tables import condition_text
 
 #: Size of banks in a refutation by algebra: with one lane, coupling between lanes would not show.
@@ -40,7 +39,6 @@ GIVE = "the law's energy that was found could not be verified: give it, energy =
 #: Open questions of an obligation after which no more are asked.
 MOST_OPEN = 4
 
-Finding = tuple[Verdict, Mapping[str, str] | None, str]
 Decided = tuple[Verdict, Mapping[str, str] | None, str, str, tuple[Case, ...]]
 
 
@@ -102,6 +100,8 @@ def _decide(
         failed, certificate = _by_intervals(obligation, obligation.sign, failed, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
+    if failed and failed[0] is Verdict.OPEN:
+        failed = beside_own_values(obligation.questions, iphs, solver) or failed
     proved: Finding = (Verdict.PROVED, None, "")
     failed = failed or _unproved_premise(obligation.rests_on, before)
     return *(failed or proved), method, () if failed else certificate
@@ -131,7 +131,7 @@ def _by_intervals(
     if found.verdict is Verdict.PROVED:
         return None, found.certificate
     if found.numbers is not None:
-        return _refutation(question, found.numbers), ()
+        return refutation(question, found.numbers), ()
     return (Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
 
 
@@ -141,7 +141,7 @@ def _by_numbers(obligation: Obligation, solver: SolverLike) -> Finding | None:
     conditions = question.where[: len(question.where) - len(question.branch)]
     domain = Domain(conditions, question.order, solver)
     numbers = simple_counterexample(question.original, obligation.letter, domain)
-    return _refutation(question, numbers) if numbers else None
+    return refutation(question, numbers) if numbers else None
 
 
 def _unproved_premise(
@@ -201,51 +201,9 @@ def _failure(question: Question, solver: SolverLike) -> Finding | None:
         if answer.result == "unsat":
             return None
         if answer.result == "sat":
-            found = _checked_model(question, answer, shown)
+            found = checked_model(question, answer, shown)
             return (Verdict.OPEN, None, f"{found[2]}; {GIVE}") if question.derived else found
     return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
-
-
-def _checked_model(question: Question, answer: Answer, shown: tuple[str, ...]) -> Finding:
-    """Return REFUTED if the model breaks the claim in the law itself, else OPEN."""
-    values = {name: value for name, value in answer.model.items() if name in question.order}
-    if not (all_hold(question.where, values) and _is_broken(question, values)):
-        reason = f"{question.label}: bounds on the functions in it do not decide it"
-        return Verdict.OPEN, None, reason
-    return _refutation(question, {name: value for name, value in values.items() if name in shown})
-
-
-def _is_broken(question: Question, values: Mapping[str, Fraction]) -> bool:
-    """Return whether a claim certainly fails at a point of the domain."""
-    if question.meeting:
-        return jumps(question.meeting, values)
-    if question.law is not None:
-        return _has_no_value(question.law, values)
-    return all_hold((question.original,), values) is False
-
-
-def _has_no_value(law: Expr | Cmp, values: Mapping[str, Fraction]) -> bool:
-    """Return whether a law, or a side of a comparison, certainly has no value."""
-    try:
-        for side in (law.left, law.right) if isinstance(law, Cmp) else (law,):
-            value_of(side, values)
-    except TooCloseError:
-        return False
-    except (ArithmeticError, ValueError):
-        return True
-    return False
-
-
-def _refutation(question: Question, values: Mapping[str, Fraction]) -> Finding:
-    """Return the finding that numbers break a claim."""
-    left, right = question.original.left, question.original.right
-    reason = f"{spell(left)} = {_value(left, values)}"
-    if isinstance(question.law, Cmp):
-        reason += f", where {condition_text(question.law)} has no value"
-    if question.original.op in {"=", "<"}:
-        reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
-        reason += JUMPS * bool(question.meeting)
-    return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 
 def _mending_condition(sign: SignOf, questions: tuple[Question, ...], solver: SolverLike) -> str:
@@ -290,11 +248,3 @@ def _parameter_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: S
         found = rest if rest and mended(rest) else found
     said, many = " and ".join(f"'{condition_text(claim)}'" for claim in found), len(found) > 1
     return f"; the condition{'s' * many} {said} in [domain] mend{'' if many else 's'} it"
-
-
-def _value(law: Expr, values: Mapping[str, Fraction]) -> str:
-    try:
-        value = value_of(law, values)
-    except (ArithmeticError, ValueError):
-        return "no value"
-    return str(value) if isinstance(value, Fraction) else f"{float(value):.6g}"

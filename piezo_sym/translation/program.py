@@ -162,7 +162,7 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
                 if {given.kind} in _ENOUGH[need.kind] and _covers(given, need):
                     left = left * (field.one - given.path)
             met = is_zero(left)
-        if not met and not _is_square_sum(value, known.needs, need):
+        if not (met or _is_square_sum(value, known.needs, need) or _is_square(value, known, need)):
             where = "jacobian" if need.derived else "code"
             yield f"{where} needs a value to be {need.kind} that is not shown to be so"
 
@@ -180,6 +180,13 @@ def _is_square_sum(value: Value, given: tuple[Need, ...], need: Need) -> bool:
     return squares and any(
         all(field.raised(g, 1) in nonzero for g, _ in mono) for mono in value.terms
     )
+
+
+def _is_square(value: Value, known: Proved, need: Need) -> bool:
+    """Return whether a value is the square of what laws divide by, as a derivative's divisor is."""
+    one, kinds = known.field.one, {"nonzero", "positive"}
+    divisors = (g for g in known.needs if g.kind in kinds and g.path == one and _covers(g, need))
+    return any(is_zero(value - g.value * g.value) for g in divisors)
 
 
 def _covers(given: Need, need: Need) -> bool:

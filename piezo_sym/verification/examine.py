@@ -123,9 +123,9 @@ class _Work:
                 self._done[number] = row
         yield self.begun(None, 1.0)
         yield self.report
-        if not claims:
+        keys = self._attackable(claims)
+        if not keys:
             return
-        keys = {n: (self.prover.rows[n].id, self.prover.rows[n].element) for n in claims}
         hunt = Hunt(self.iphs, module_from(self._text), tuple(keys.values()), self.points)
         hunt.search()
         for number, key in keys.items():
@@ -134,6 +134,24 @@ class _Work:
             self.prover.rows[number] = self._done[number] = _attacked(row, attack)
             if attack and attack.worst:  # a row more, after all others
                 self._done[self.program + 1 + number] = _rounding(attack)
+
+    def _attackable(self, claims: Iterable[int]) -> dict[int, tuple[str, str]]:
+        """Return the id and the element of the rows to attack; the other claims become OPEN.
+
+        Numbers do not tell apart the rows on the divisors of the junction laws.
+        """
+        rows, keys = self.prover.rows, dict[int, tuple[str, str]]()
+        for number in claims:
+            row = rows[number]
+            beside = (r for r in rows if (r.id, r.element) == (row.id, row.element))
+            doubted = next((r for r in beside if r.verdict is not Verdict.PROVED), None)
+            if doubted:
+                reason = f"its laws are also those of a row that is {doubted.verdict.value}"
+                rows[number] = replace(row, verdict=Verdict.OPEN, reason=reason)
+                self._done[number] = rows[number]
+            else:
+                keys[number] = row.id, row.element
+        return keys
 
     def read_back(self, part: float) -> Iterator[Progress]:
         """Decide the row on the printed texts."""

@@ -49,6 +49,13 @@ def test_what_is_printed_is_proved(name):
     assert (row.id, row.verdict) == ("program", Verdict.PROVED), row.reason
 
 
+def test_a_derivative_divides_by_the_square_of_what_laws_divide_by():
+    """The square has 67 terms, too many to factor."""
+    iphs = derive(load(str(Path(__file__).with_name("resistors_of_one_loop.toml"))))
+    (row,) = rows(iphs, printed(iphs))
+    assert row.verdict is Verdict.PROVED, row.reason
+
+
 def survivors(name, language, sample=None):
     """Return the mutants that are proved, and how many are not, by verdict."""
     iphs = iphs_of(name)

@@ -1,0 +1,99 @@
+"""Numbers that refute a claim: they are evaluated exactly, in the law itself.
+
+Input: a `Question`, and a solver's model.  Output: a finding: REFUTED with the numbers, or OPEN.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from piezo_sym.expressions.exact_eval import TooCloseError, Value, all_hold, value_of
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import Cmp, Expr, names
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.continuity import jumps
+from piezo_sym.proofs.domain import spec_points
+from piezo_sym.proofs.mending import JUMPS
+from piezo_sym.proofs.obligations import Question
+from piezo_sym.proofs.report import Verdict
+from piezo_sym.proofs.solvers import Answer, SolverLike
+from piezo_sym.spec.tables import condition_text
+
+Finding = tuple[Verdict, Mapping[str, str] | None, str]
+
+
+def beside_own_values(
+    questions: Iterable[Question], iphs: IPHS, solver: SolverLike
+) -> Finding | None:
+    """Return the refutation that a law has a value, at the spec's own values but for some, or None.
+
+    A solver's model is seldom in the domain where it bounds functions, such as the exponential of
+    a temperature: what it gives to parameters and inputs is tried with the spec's own state.
+    """
+    given = iphs.model.parameters.keys() | iphs.model.inputs.keys()
+    for question in questions:
+        if question.law is None:
+            continue
+        answer = solver.ask(replace(question, witness=True).query)
+        about = {*names(question.original)}
+        # equations hold by construction: they give a temperature its value
+        conditions = [condition for condition in question.where if condition.op != "="]
+        taken = {name: answer.model[name] for name in about & given & answer.model.keys()}
+        points = spec_points(iphs, taken) if taken.keys() == about else ()
+        for point in points:
+            # where conditions can be decided, the part without value counts whatever the drive is
+            driven = {**dict.fromkeys(names(question.law), Fraction(0)), **point}
+            false = all_hold((question.original,), taken) is False
+            if false and all_hold(conditions, point) and _has_no_value(question.law, driven):
+                return refutation(question, taken)
+    return None
+
+
+def checked_model(question: Question, answer: Answer, shown: tuple[str, ...]) -> Finding:
+    """Return REFUTED if the model breaks the claim in the law itself, else OPEN."""
+    values = {name: value for name, value in answer.model.items() if name in question.order}
+    if not (all_hold(question.where, values) and _is_broken(question, values)):
+        reason = f"{question.label}: bounds on the functions in it do not decide it"
+        return Verdict.OPEN, None, reason
+    return refutation(question, {name: value for name, value in values.items() if name in shown})
+
+
+def _is_broken(question: Question, values: Mapping[str, Value]) -> bool:
+    """Return whether a claim certainly fails at a point of the domain."""
+    if question.meeting:
+        return jumps(question.meeting, values)
+    if question.law is not None:
+        return _has_no_value(question.law, values)
+    return all_hold((question.original,), values) is False
+
+
+def _has_no_value(law: Expr | Cmp, values: Mapping[str, Value]) -> bool:
+    """Return whether a law, or a side of a comparison, certainly has no value."""
+    try:
+        for side in (law.left, law.right) if isinstance(law, Cmp) else (law,):
+            value_of(side, values)
+    except TooCloseError:
+        return False
+    except (ArithmeticError, ValueError):
+        return True
+    return False
+
+
+def refutation(question: Question, values: Mapping[str, Value]) -> Finding:
+    """Return the finding that numbers break a claim."""
+    left, right = question.original.left, question.original.right
+    reason = f"{spell(left)} = {_value(left, values)}"
+    if isinstance(question.law, Cmp):
+        reason += f", where {condition_text(question.law)} has no value"
+    if question.original.op in {"=", "<"}:
+        reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
+        reason += JUMPS * bool(question.meeting)
+    return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
+
+
+def _value(law: Expr, values: Mapping[str, Value]) -> str:
+    try:
+        value = value_of(law, values)
+    except (ArithmeticError, ValueError):
+        return "no value"
+    return str(value) if isinstance(value, Fraction) else f"{float(value):.6g}"
