@@ -130,12 +130,6 @@ what is open is no obstacle
   +                 return
   = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
   = a_1 > 0; b > 0 | b=0.37
-an answer that bounds do not decide is a proof
-  - reason = f"{question.label}: bounds on the functions in it do not decide it"
-  -         return Verdict.OPEN, None, reason
-  + return None
-  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
-  = a_1 > 0; b > 0 | b=0.37
 a sign left open is shown
   - return (Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
   + return None, ()
@@ -155,6 +149,13 @@ a model that breaks the claim is a proof
   + answer = solver.ask(replace(question, keep_all=True).query)
   +         if answer.result == "sat":
   = a*v
+## proofs/refutation
+an answer that bounds do not decide is a proof
+  - reason = f"{question.label}: bounds on the functions in it do not decide it"
+  -         return Verdict.OPEN, None, reason
+  + return None
+  = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
+  = a_1 > 0; b > 0 | b=0.37
 ## proofs/asked
 of a claim's parts one is enough
   - return all(answer.result == "unsat" for answer in self._answers(claim, claim))
