@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 IMPLICIT = ("Radau", "BDF", "LSODA")
 MOST_STILL = 20  # the most steps in a row that do not change the time
+#: The most steps of one length in a row; how far they differ; the most of them that may be left.
+MOST_EQUAL, SAME, MOST_LEFT = 200, 1e-3, 2000
+NEAR = 1e-9  # of a time: LSODA cannot start closer to its end
 SHORTEST = 1e-12  # of a segment: the shortest first step after a failure
 
 
@@ -43,10 +46,11 @@ def accepted_steps(
     """Yield the solver of one segment after each accepted step; `nfev` includes all restarts.
 
     LSODA accepts trial states at which the laws are nan, and other solvers give up near one. So a
-    step that fails is repeated from the last accepted state, ten times shorter.
+    step that fails is repeated from the last accepted state, ten times shorter. After a jump of the
+    rates LSODA may keep for ever to the steps that the slope there allows: so it starts anew.
     """
     span = trial = segment.stop - segment.start
-    solver, rest, spent, still = None, segment, 0, 0
+    solver, rest, spent, still, equal = None, segment, 0, 0, 0
     while solver is None or solver.status == "running":
         try:
             solver = advance(solver or new_solver(system, rest, x, tolerance, trial, spent))
@@ -55,7 +59,8 @@ def accepted_steps(
             if trial < SHORTEST * span:
                 raise solver_error(system, tolerance, rest.start, str(cause)) from cause
         else:
-            x, trial = solver.y.copy(), float(solver.t) - rest.start
+            x, before, trial = solver.y.copy(), trial, float(solver.t) - rest.start
+            equal = equal + 1 if abs(trial - before) < SAME * trial else 0
             still = 0 if trial else still + 1
             if still > MOST_STILL:
                 raise solver_error(
@@ -63,6 +68,14 @@ def accepted_steps(
                 )
             rest = replace(segment, start=float(solver.t))
             yield solver
+            if equal > MOST_EQUAL and crawls(tolerance, rest, trial):
+                spent, trial, solver, equal = solver.nfev, span, None, 0
+
+
+def crawls(tolerance: Tolerance, rest: Segment, step: float) -> bool:
+    """Return whether LSODA would take too many such steps in what is left, which it can start."""
+    left = rest.stop - rest.start
+    return tolerance.method == "LSODA" and left > max(MOST_LEFT * step, NEAR * abs(rest.stop))
 
 
 def advance(solver: OdeSolver) -> OdeSolver:

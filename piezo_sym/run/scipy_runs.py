@@ -24,7 +24,7 @@ from piezo_sym.run.collocation import Watch
 from piezo_sym.run.dataset import Trajectory
 from piezo_sym.run.guard import crossing, domain_error, rate_error
 from piezo_sym.run.inputs import Segment
-from piezo_sym.run.integrate import Tolerance, accepted_steps
+from piezo_sym.run.integrate import NEAR, Tolerance, accepted_steps
 from piezo_sym.run.system import DrivenModule
 
 #: Absolute tolerances: this part of rtol times the scale of each state.
@@ -35,7 +35,6 @@ MOST_STOPS, MOST_NUMBERS = 512, 100_000
 #: Of the coarse run; ATOL is a part of the scale known so far.
 RTOL, ATOL = 1e-3, 1e-2
 GROWTH = 10.0  # of a state over its scale, at which the coarse run restarts with a new scale
-NEAR = 1e-9  # of a time: LSODA cannot start closer to its end
 MOST_STEPS = 50_000
 TRUSTED = 0.9
 #: Tolerances and steps of the run that explains why a run in C stopped.

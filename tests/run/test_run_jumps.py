@@ -11,9 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from piezo_sym import simulate, sine, step, sweep
+from piezo_sym import simulate, sine, step, sweep, triangle
 from piezo_sym.modules import module_of
+from piezo_sym.run import integrate
 from piezo_sym.run.functions import INTERVALS, jumps
+from piezo_sym.run.integrate import advance
 from piezo_sym.spec.load import parse
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
@@ -219,6 +221,22 @@ def test_a_run_through_what_follows_at_once_has_all_samples_and_closes_its_balan
     bound = 1e-12 * float(np.ptp(energy)) + 4 * np.spacing(np.abs(energy).max())
     assert float(np.abs(found.energy_residual).max()) <= bound
     assert float(np.abs(found.entropy_residual).max()) <= 1e-12 * float(np.ptp(entropy))
+
+
+def test_lsoda_does_not_crawl_after_stops_begin_to_slip(monkeypatch):
+    """It kept to steps of 0.2 ns, which the jump of the rates had allowed."""
+    steps = iter(range(20_000))
+
+    def counted(solver):
+        next(steps)
+        return advance(solver)
+
+    monkeypatch.setattr(integrate, "advance", counted)
+    options = {"inputs": {"V_in": triangle(60, 100, 60)}, "duration": 0.01, "times": 11}
+    found = simulate("stack_maxwell", method="LSODA", **options)
+    wanted = simulate("stack_maxwell", rtol=1e-8, **options)
+    for name in ("q", "z", "S"):
+        assert np.abs(found[name] - wanted[name]).max() < 1e-4 * np.abs(wanted[name]).max()
 
 
 def shifted(t):
