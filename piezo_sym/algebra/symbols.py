@@ -19,7 +19,6 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.grammar import parse_rule
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import (
-    ZERO,
     Add,
     Call,
     Cmp,
@@ -152,13 +151,14 @@ def _symbol(name: str, bank: str | None, sign: Mapping[str, bool] | None) -> sp.
 
 
 def _signs(circuit: Circuit) -> dict[str, dict[str, bool]]:
-    """Return the SymPy assumption on each parameter or input that the domain bounds by zero."""
+    """Return the SymPy assumption on each parameter or input that the domain keeps >= a number."""
     found: dict[str, dict[str, bool]] = {}
     for condition in circuit.conditions:
         match greater(condition.tree):
-            case Cmp(">" | ">=" as op, Sym(name), right) if right == ZERO:
+            case Cmp(">" | ">=" as op, Sym(name), Num(least)) if least >= 0:
                 if found.get(name) != {"positive": True}:
-                    found[name] = {"positive": True} if op == ">" else {"nonnegative": True}
+                    strict = op == ">" or least > 0
+                    found[name] = {"positive": True} if strict else {"nonnegative": True}
     known = {*circuit.model.parameters, *circuit.model.inputs}
     return {name: sign for name, sign in found.items() if name in known}
 

@@ -1,8 +1,8 @@
 """A system as text that a second program can check: rates, U, y, and the law of each name.
 
-Input: an `IPHS`.  Output: the "system" part of ``proofs.json``, in the law grammar of specs and
-``sum(bank, law)``.  Names of a bank have no index: they are of the row's own lane, or of the lane
-that the enclosing sum runs over.
+Input: an `IPHS`.  Output: the "system" part of ``proofs.json``, in the law grammar of specs with
+``sum(bank, law)``, and ``pow(x, w)`` for x**w of an x that may be zero.  Names of a bank have no
+index: they are of the row's own lane, or of the lane that the enclosing sum runs over.
 """
 
 from __future__ import annotations
@@ -23,8 +23,12 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, DissipativePort, Storage
 
-#: The law language, and sums over the lanes of a bank.
-STYLE = changed(SPEC, lane_sum=lambda arg, bank: (f"sum({bank}, {arg[0]})", ATOM))
+#: The law language, sums over the lanes of a bank, and powers of what may be zero.
+STYLE = changed(
+    SPEC,
+    lane_sum=lambda arg, bank: (f"sum({bank}, {arg[0]})", ATOM),
+    call=lambda name, args: (f"{name}({', '.join(text for text, _ in args)})", ATOM),
+)
 COMPARISONS = {sp.Lt: "<", sp.Le: "<=", sp.Gt: ">", sp.Ge: ">="}
 FUNCTIONS = tuple(getattr(sp, name) for name, r in WRITTEN.items() if r.transcendental)
 HALF = sp.Rational(1, 2)

@@ -138,6 +138,9 @@ def _common(cases: list[Case]) -> Value | None:
     while cases:
         (base, sides), *rest = cases
         wrong = [case for case in rest if _differs(base, case)]
+        if wrong and 0 not in sides.values() and vanishes(base):  # 0/0 on an edge of its own only
+            base = base.field.zero
+            wrong = [case for case in rest if _differs(base, case)]
         if all(impossible(case[1]) for case in wrong):
             return base
         if not impossible(sides):
