@@ -20,16 +20,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, TypeAlias, final
+from typing import Any, final
 
 import numpy as np
 
 from piezo_sym.analysis.conserved import FLOOR
-from piezo_sym.analysis.stroboscope import Period, Stroboscope
+from piezo_sym.analysis.stroboscope import Period, Rows, Stroboscope
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray, positive_range
-
-Rows: TypeAlias = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
 DIFFERENCE = 1e-4  # step of difference quotients, over the size of the state
 TOLERANCE = 1e-8  # change of a state that repeats, over its size
@@ -61,7 +59,8 @@ class Settled:
 def settled(strobe: Stroboscope, T: float, near: FloatArray) -> Settled:
     """Return the settled state at the temperature T, by Newton's method from x = `near` (n,)."""
     best = x = strobe.at_temperature(near, T)
-    fast = np.arange(x.size) != strobe.entropy_row(x)
+    slow = strobe.entropy_row(x)
+    fast = strobe.repeating & (np.arange(x.size) != slow)
     least, move = np.inf, np.zeros(x.size)
     for _ in range(MOST_PERIODS):
         try:
@@ -69,7 +68,7 @@ def settled(strobe: Stroboscope, T: float, near: FloatArray) -> Settled:
             off = (period.end - x) / period.size
             error = float(np.max(np.abs(off[fast]), initial=0.0))
             if error < TOLERANCE:
-                return Settled(T, x, float((period.end - x)[~fast][0]), period)
+                return Settled(T, x, float((period.end - x)[slow]), period)
             if error < MOST_GROWTH * least:
                 move = _move(strobe, x, off, period.size, fast)
                 best, least = x, error
@@ -133,11 +132,13 @@ def unit_rows(rows: FloatArray) -> FloatArray:
 
 def fixed_point(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> FloatArray:
     """Return the fixed point (n,) near x, to round-off, by Newton's method with one Jacobian."""
-    matrix = slope - np.eye(x.size)
+    rows, move = strobe.repeating, np.zeros(x.size)
+    matrix = (slope - np.eye(x.size))[np.ix_(rows, rows)]
     error = np.inf
     for _ in range(MOST_ITERATIONS):
         period = strobe.look(x)
-        move = _solved(matrix, (period.end - x) / period.size, strobe.conserved * period.size)
+        off, kept = (period.end - x) / period.size, strobe.conserved * period.size
+        move[rows] = _solved(matrix, off[rows], kept[:, rows])
         if np.max(np.abs(move)) >= error:
             break
         error = float(np.max(np.abs(move)))

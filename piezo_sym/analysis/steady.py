@@ -32,6 +32,7 @@ from piezo_sym.analysis.balance import (
     temperature_range,
     zeros,
 )
+from piezo_sym.analysis.drifting import unsettled, warn_of_drift
 from piezo_sym.analysis.stroboscope import Stroboscope, over_period, stroboscope
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray, number, positive
@@ -61,7 +62,7 @@ class SteadyState:
     frequency : of the inputs [Hz].
     temperature, coldest, hottest : mean, least and greatest of the body in a period.
     loss : heat released by all processes in a period [J].
-    residual : largest change of a state over `orbit`, over its size.
+    residual : largest change of a state over `orbit`, over its size; not of states that drift.
     multiplier : the greatest magnitude of the eigenvalues of dP/dx.
     stable : whether the multiplier is at most 1: motions that neither grow nor decay are allowed.
     initial : the state at t = 0, as for `simulate(initial=...)`.
@@ -98,7 +99,9 @@ def periodic_steady_state(
     """Return the periodic steady state that a run from its initial state approaches.
 
     That is the first zero of the drift in its direction at the start, once all other states have
-    settled. Where the temperature is not the slowest motion, compare with a run.
+    settled. Where the temperature is not the slowest motion, compare with a run. A state that
+    drifts, and on which no rate depends, such as a free position, keeps its initial value; a
+    `SteadyWarning` says how far it drifts in a period.
 
     >>> from piezo_sym import periodic_steady_state, sine
     >>> periodic_steady_state("piezo_stack", inputs={"V_in": sine(100, 50)}, frequency=50)
@@ -123,8 +126,8 @@ def periodic_steady_state(
     EngineError : there is no C compiler.
     """
     strobe, accuracy = _read(module, inputs, frequency, parameters, initial, rtol)
-    zero = _first_zero(strobe, _settled_states(strobe, temperatures))
-    return _steady_state(strobe, zero, accuracy)
+    strobe, known = _settled_states(strobe, temperatures)
+    return _steady_state(strobe, _first_zero(strobe, known), accuracy)
 
 
 def periodic_steady_states(
@@ -144,8 +147,8 @@ def periodic_steady_states(
     `periodic_steady_state`, but the result may be empty.
     """
     strobe, accuracy = _read(module, inputs, frequency, parameters, initial, rtol)
-    steady = zeros(strobe, _settled_states(strobe, temperatures))
-    return tuple(_steady_state(strobe, zero, accuracy) for zero in steady)
+    strobe, known = _settled_states(strobe, temperatures)
+    return tuple(_steady_state(strobe, zero, accuracy) for zero in zeros(strobe, known))
 
 
 def _read(
@@ -166,11 +169,19 @@ def _read(
     return strobe, accuracy
 
 
-def _settled_states(strobe: Stroboscope, given: tuple[float, float] | None) -> list[Settled]:
-    """Return settled states over the range; if none is given, also below while the body cools."""
+def _settled_states(
+    strobe: Stroboscope, given: tuple[float, float] | None
+) -> tuple[Stroboscope, list[Settled]]:
+    """Return settled states over the range; if none is given, also below while the body cools.
+
+    Where nothing settles, states that move nothing are set free: see the stroboscope returned.
+    """
     low, high = temperature_range(strobe, given)
     temperatures = grid(low, high)
     known = [state for state in scan(strobe, temperatures, strobe.start) if state]
+    if not known and strobe.moving_nothing.any():
+        strobe = replace(strobe, free=True)
+        known = [state for state in scan(strobe, temperatures, strobe.start) if state]
     if len(known) < len(temperatures):
         lost = sorted(set(temperatures) - {state.temperature for state in known})
         text = f"nothing settles at {len(lost)} of {len(temperatures)} temperatures"
@@ -184,15 +195,16 @@ def _settled_states(strobe: Stroboscope, given: tuple[float, float] | None) -> l
             known.insert(0, state)
             if state.drift >= 0:
                 break
-    return known
+    return strobe, known
 
 
 def _first_zero(strobe: Stroboscope, known: list[Settled]) -> Settled:
     """Return the first zero from the start in the direction of the drift there."""
     T = strobe.temperature(strobe.start)
     if not known:
-        what = f"nothing settles at {T:.6g} K or anywhere in the range"
-        raise RunError(what, strobe.where, remedy="look at the inputs")
+        what = f"nothing settles at {T:.6g} K or anywhere in the range: {unsettled(strobe)}"
+        remedy = "take the mean out of the input that drives it, hold it by a spring, or simulate"
+        raise RunError(what, strobe.where, remedy=remedy)
     at = min(known, key=lambda state: abs(state.temperature - T))
     if at.drift == 0:
         return at
@@ -223,6 +235,7 @@ def _steady_state(strobe: Stroboscope, zero: Settled, rtol: float) -> SteadyStat
         x = fixed_point(strobe, x, slope)
         # half the step at order 2: the error is a third of the change
         error = float(np.max(np.abs(x - before) / strobe.look(x).size)) / 3
+    warn_of_drift(strobe, x)
     state = _described(strobe, x, slope)
     _refuse_residual(strobe, state, rtol)
     return state
@@ -255,7 +268,7 @@ def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyS
         coldest=coldest,
         hottest=hottest,
         loss=float(sum(heat.isel(time=-1).sum() for heat in heats)),
-        residual=float(np.max(np.abs(states[:, -1] - states[:, 0]) / size)),
+        residual=float(np.max((np.abs(states[:, -1] - states[:, 0]) / size)[strobe.repeating])),
         multiplier=multiplier,
         stable=multiplier <= 1 + MARGIN,
         initial=strobe.named(x),

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, final
+from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
 
@@ -40,6 +40,8 @@ from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
     import xarray
+
+Rows: TypeAlias = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
 SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
 SPREAD = (-2.0, 2.0)  # powers of ten between which random states are spread, over their sizes
@@ -77,6 +79,7 @@ class Stroboscope:
     parameters: Mapping[str, LaneValue]
     initial: Mapping[str, LaneValue]
     steps: int  # per period
+    free: bool = False  # whether states that move nothing need not repeat
 
     @property
     def duration(self) -> float:
@@ -160,8 +163,22 @@ class Stroboscope:
         return read_initial(self.module, self.values, u, self.initial)
 
     @cached_property
+    def repeating(self) -> Rows:
+        """Which states (n,) must repeat: if `free`, not those that `moving_nothing` has."""
+        return ~self.moving_nothing if self.free else np.ones(self.start.size, dtype=bool)
+
+    @cached_property
+    def moving_nothing(self) -> Rows:
+        """Which states (n,) no rate depends on in the period from the start, as a free position."""
+        times = np.linspace(0.0, self.duration, SAMPLES + 1)
+        x, u = self._period(self.start), self.inputs.at_samples(times)
+        with np.errstate(all="ignore"):
+            slopes = self.module.jacobian(x, u, self.values)
+        return np.asarray(~slopes.any(axis=(0, 2)))
+
+    @cached_property
     def conserved(self) -> FloatArray:
-        """Linear functions (k, n) of the state that are conserved; none in doubtful cases.
+        """Linear functions (k, n) of repeating states that are conserved; none in doubtful cases.
 
         They are zero on the rates at random states of the domain, and constant over a period.
         """
@@ -177,7 +194,7 @@ class Stroboscope:
             return none
         functions = conserved_functions(rates, size)
         kept = np.ptp(functions @ states, axis=1) <= CONSTANT * (np.abs(functions) @ size)
-        return np.asarray(functions[kept])
+        return np.asarray(functions[kept & ~functions[:, ~self.repeating].any(axis=1)])
 
     def _random_rates(self, size: FloatArray) -> FloatArray:
         """Return rates (n, many) at states so widely spread that no law is zero at all of them.

@@ -505,14 +505,16 @@ def test_a_stop_that_sticks_keeps_its_slip(start):
     assert found.initial["z"] == pytest.approx(q - slip, rel=1e-6)
 
 
+FREE = STICKING[: STICKING.index("[elements.slip]")]
+FREE = FREE.replace('stiffness = "k"', 'force = "k*deadzone(q, 100*q_0)"')
+FREE = FREE.replace("F_s = {", 'q_0 = { value = 1.0, unit = "m" }\nF_s = {')
+
+
 @pytest.mark.usefixtures("cache")
 @pytest.mark.parametrize(("start", "phase"), [(0.0, 0.0), (3.0, 1.0)])
 def test_a_free_position_is_where_the_start_and_the_drive_put_it(start, phase):
     """m v' + d v = F: p + d x changes by the impulse of F, which a period does not change."""
-    text = STICKING[: STICKING.index("[elements.slip]")]
-    text = text.replace('stiffness = "k"', 'force = "k*deadzone(q, 100*q_0)"')
-    text = text.replace("F_s = {", 'q_0 = { value = 1.0, unit = "m" }\nF_s = {')
-    model = parse(text)
+    model = parse(FREE)
     m, d, amplitude, omega = 1.0, 50.0, 20.0, 2 * np.pi * 5
     drive = {"F": sine(amplitude, 5, 0.0, phase)}
     found = periodic_steady_state(model, inputs=drive, frequency=5, initial={"q": start})
@@ -520,6 +522,44 @@ def test_a_free_position_is_where_the_start_and_the_drive_put_it(start, phase):
     x = start - m * v.imag / d
     assert found.initial["p"] == pytest.approx(m * v.imag, abs=1e-6 * m * abs(v))
     assert found.initial["q"] == pytest.approx(x, abs=1e-6 * abs(v) / omega)
+
+
+@pytest.mark.usefixtures("cache")
+@pytest.mark.filterwarnings("ignore:nothing settles")
+def test_a_free_position_that_drifts_stays_at_its_start_and_the_others_repeat():
+    """m v' + d v = F: the mean of v is that of F over d."""
+    drive = {"F": sine(20.0, 5, 10.0, 1.0)}
+    with pytest.warns(SteadyWarning, match="'q' drifts by 0.04 m a period; no rate depends on it"):
+        found = periodic_steady_state(parse(FREE), inputs=drive, frequency=5, initial={"q": 2.0})
+    wanted = 10.0 / 50.0 + (20.0 * np.exp(1j) / (50.0 + 10j * np.pi)).imag
+    assert found.initial["p"] == pytest.approx(wanted, rel=1e-6)
+    assert found.initial["q"] == 2.0
+    assert found.residual < 1e-6
+
+
+@pytest.mark.usefixtures("cache")
+@pytest.mark.filterwarnings("ignore:nothing settles")
+def test_a_free_position_may_be_coupled_to_the_temperature():
+    """Where the body is not at its steady temperature, the position drifts."""
+    text = FREE.replace('force = "d*v"', 'force = "d*v*(1 + al*(T - T_0))"')
+    text = text.replace("F_s = {", 'al = { value = -5e-3, unit = "1/K" }\nF_s = {')
+    model = parse(text.replace('"d >= 0",', '"d >= 0", "1 + al*(T - T_0) >= 0",'))
+    drive = {"F": sine(100.0, 5)}
+    found = periodic_steady_state(model, inputs=drive, frequency=5)
+    run = simulate(model, inputs=drive, duration=20.0, times=2, rtol=1e-9)
+    assert found.initial["p"] == pytest.approx(float(run.p[-1]), rel=1e-4)
+    assert found.initial["S"] == pytest.approx(float(run.S[-1]), rel=1e-4)
+
+
+@pytest.mark.usefixtures("cache")
+def test_a_state_that_drifts_and_moves_others_is_named():
+    """Without a damper p grows by the impulse of F, 10 N in 0.2 s, until the spring is hit."""
+    text = FREE.replace("damper = {", "# damper = {").replace("100*q_0", "1e6*q_0")
+    with (
+        pytest.warns(SteadyWarning, match="nothing settles"),
+        pytest.raises(RunError, match=r"periods from the start, 'q' drifts by .* m a period; take"),
+    ):
+        periodic_steady_state(parse(text), inputs={"F": sine(20.0, 5, 10.0)}, frequency=5)
 
 
 @pytest.mark.parametrize("pair", [False, True])
@@ -537,6 +577,7 @@ def test_only_what_is_surely_conserved_counts(many, pair):
 
     stub = Stub(
         start=np.ones(many),
+        repeating=np.ones(many, dtype=bool),
         _period=lambda x: x[:, None] * np.array([1.0, 1.1, 1.2]),
         _system=SimpleNamespace(scale=lambda x: x),
         entropy_row=lambda _: 0,
