@@ -9,6 +9,7 @@ import typer
 from rich.text import Text
 
 from piezo_sym.cli.output import about, console, print_table
+from piezo_sym.cli.simulate import DURATION, time
 from piezo_sym.cli.words import Units, pairs
 from piezo_sym.files import write_text
 
@@ -21,7 +22,7 @@ def bench(
     ] = "piezo_stack",
     only: Annotated[Words, typer.Option(metavar="GROUP", help="rhs, batch or run; repeat.")] = None,
     repeat: Annotated[int, typer.Option(min=1, help="Repetitions of each call.")] = 5,
-    duration: Annotated[float, typer.Option(help="Length of a run [s].")] = 0.1,
+    duration: Annotated[float, time(DURATION, "--duration")] = 0.1,
     inputs: Annotated[
         Words, typer.Option("--input", "-i", help="NAME=NUMBER or NAME=sine(100V,50Hz).")
     ] = None,

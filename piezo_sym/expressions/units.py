@@ -123,14 +123,16 @@ def _read(text: str, where: str, value: float | None) -> Unit:
     for unit, power in terms:
         factor *= _raised(unit.factor, power, text, where)
         dimension = [d + p * power for d, p in zip(dimension, unit.dimension, strict=True)]
-    as_written = all(unit.si == unit.text for unit, _ in terms)
+    as_written = all(unit.si == unit.text != "1" for unit, _ in terms)
     si = text if as_written else _spelled([(unit.si, power) for unit, power in terms])
     return Unit(text, si, factor, tuple(dimension))
 
 
 def _spelled(terms: Terms) -> str:
-    text = ""
-    for name, power in terms:
+    """Return a unit as text, without numbers: N*m, not N*m/1."""
+    named = [(name, power) for name, power in terms if name != "1"]
+    text = "" if named and named[0][1] > 0 else "1"
+    for name, power in named:
         over, product = bool(text) and power < 0, re.search("[*/]", name) and power != 1
         part = raised(f"({name})" if product else name, -power if over else power)
         text += f"{'/' if over else '*'}{part}" if text else part

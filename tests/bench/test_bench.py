@@ -127,7 +127,8 @@ def test_without_a_compiler_numpy_remains():
 
 def test_the_command(tmp_path, capsys):
     file = tmp_path / "report.json"
-    words = ["bench", OSCILLATOR, "--repeat", 1, "--duration", 2, "--only", "run", "--json", file]
+    words = ["bench", OSCILLATOR, "--repeat", 1, "--duration", "2000 ms"]
+    words += ["--only", "run", "--json", file]
     assert run([str(word) for word in words]) == 0
     out = capsys.readouterr().out
     found = json.loads(file.read_text())

@@ -74,6 +74,16 @@ def test_a_netcdf_file_holds_the_result(call, expected, tmp_path):
         assert result.attrs["parameter_L"] == 5e-4
 
 
+@pytest.mark.parametrize("name", ["run.csv", "run.nc", "run.zarr"])
+def test_a_result_replaces_nothing(call, tmp_path, name):
+    path = tmp_path / name
+    path.write_text("kept")
+    answer = call(*SHORT, "--out", path)
+    assert answer.code == 2
+    assert f"{name}': exists already; choose another path, or delete it" in answer.err
+    assert path.read_text() == "kept"
+
+
 def test_a_result_leaves_no_other_file(call, tmp_path):
     (tmp_path / "run.csv").mkdir()
     assert call(*SHORT, "--out", tmp_path / "run.csv").code == 2
