@@ -1,7 +1,7 @@
 """Runs whose steps can be taken again, to the bit, and looked at: for derivatives along them.
 
 Input: one run of a module.  Output: `Taped`, whose steps are `TapedStep` records: what each begins
-with is all that it depends on, beside the run's parameters, inputs and scales of states.
+with is all that it depends on, beside the run's parameters, inputs, scales and noise of states.
 """
 
 import ctypes
@@ -52,6 +52,7 @@ class Taped:
     engine, parameters, inputs : of the run.
     x : the state at t = 0.
     scale : the size of each state, by which changes count as noise; when left out, a survey's.
+    noise : how far round-off moves each state that is at rest; when left out, not at all.
     """
 
     def __init__(
@@ -62,6 +63,7 @@ class Taped:
         inputs: Inputs,
         stepping: Stepping,
         scale: FloatArray | None = None,
+        noise: FloatArray | float = 0.0,
     ) -> None:
         self.engine, self.parameters, self.stages = engine, parameters, stepping.stages
         if stepping.lossy:
@@ -74,6 +76,7 @@ class Taped:
             self._batch.survey(stepping.longest)
             scale = self._batch.largest[0]
         self._batch.largest[0] = scale
+        self._batch.noise[0] = noise
         self.scale = np.array(np.broadcast_to(scale, x.shape), dtype=float)
         branches = self._batch.sizes()[2]
         self._t, self._h = np.empty(ROOM), np.empty(ROOM)
