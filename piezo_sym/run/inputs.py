@@ -95,6 +95,19 @@ class Inputs:
         u = np.empty((len(self.signals), times.size))
         for n in np.unique(place):
             u[:, place == n] = self.segments[n].over(times[place == n])
+        u[:, times >= self.end] = self.at_end[:, None]
+        return u
+
+    @cached_property
+    def at_end(self) -> FloatArray:
+        """The inputs (m,) at the end; at a jump, and of functions, at the number before it."""
+        last = self.segments[-1]
+        u = last.at(self.end)
+        size = np.abs(last.over(np.linspace(last.start, last.stop, 5))).max(axis=1)
+        for row, signal in last.varying:
+            if not isinstance(signal, InputFunction):  # which may have no value at the end
+                now = float(signal(self.end))
+                u[row] = now if abs(now - u[row]) <= LEAST_JUMP * size[row] else u[row]
         return u
 
     @cached_property

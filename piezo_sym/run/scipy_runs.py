@@ -112,7 +112,7 @@ def record(
                 kept = np.isin(stops, times) & (np.cumsum(~valid) == 0)
                 places = np.searchsorted(times, stops[kept])
                 result.states[:, places] = path.states(stops)[:, kept]
-                result.inputs[:, places] = path.segment.over(stops)[:, kept]
+                result.inputs[:, places] = system.inputs.at_samples(stops[kept])
                 result.integrals[:, places] = sums[:, kept]
                 if not valid.all():
                     raise exit_error(system, path, np.append(since, stops[: np.argmin(valid) + 1]))

@@ -233,3 +233,21 @@ def test_a_command_that_is_held_between_samples_may_jump_often(held):
         "piezo_stack", inputs={"V_in": command}, duration=ends[-1], times=[0.0, ends[-1]]
     )
     assert run.attrs["accepted_steps"] < 20 * held
+
+
+@pytest.mark.parametrize("method", [None, "Radau"])
+@pytest.mark.parametrize(
+    ("drive", "end"),
+    [
+        (([0, 0.1, 0.3], [0, 1, 0]), 0.0),  # not 3e-16
+        (triangle(1.0, 5.0), 0.0),
+        (ramp(0.1, 0.3, 1.0, 0.5), 0.5),
+        (step(0.3, 1.0, 2.0), 1.0),  # at a jump, as before it
+        (([0, 0.1, 0.3, 0.3], [0, 1, 1, 5]), 1.0),
+        (lambda t: 1 / (0.3 - t) if t < 0.3 else nan, None),
+    ],
+)
+def test_the_last_sample_of_an_input_is_its_value_there(drive, end, method):
+    inputs = {"V_in": drive} if end is not None else {"V_in": lambda t: drive(t - 0.3)}
+    run = simulate("piezo_stack", inputs=inputs, duration=0.3, times=4, method=method)
+    assert float(run.V_in[-1]) == (end if end is not None else pytest.approx(1 / 0.3))
