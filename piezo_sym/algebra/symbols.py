@@ -71,8 +71,8 @@ class Raised(sp.Function):  # type: ignore[misc]
 
 @final
 @dataclass(frozen=True)
-class SymbolTable:
-    """The symbols of a circuit.
+class SymbolTable(Mapping[str, sp.Symbol]):
+    """The symbols of a circuit, by name.
 
     Attributes
     ----------
@@ -90,6 +90,14 @@ class SymbolTable:
     def __getitem__(self, name: str) -> sp.Symbol:
         """Return the symbol of a name."""
         return self.symbols[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Yield the names."""
+        return iter(self.symbols)
+
+    def __len__(self) -> int:
+        """Return how many names there are."""
+        return len(self.symbols)
 
     def law(self, tree: Expr, letters: Mapping[str, sp.Expr]) -> sp.Expr:
         """Return a law as a SymPy expression, its letters replaced by the given expressions.

@@ -58,7 +58,8 @@ class Branches:
 
     Attributes
     ----------
-    curves : each a tuple of `CurvePoint` in order: `.frequency` [Hz], `.stable`, `.state`.
+    curves : each a tuple of `CurvePoint` in order: `.frequency` [Hz], `.stable`, and `.state`, with
+        the state (n,) at t = 0 as `.x`, and `.period.mean`, `.coldest`, `.hottest` [K].
     jumps : a `Jump` where a stable part ends: `.frequency` [Hz], `.upward`, `.temperature` and
         `.lands` [K].
     """
@@ -104,6 +105,12 @@ def steady_branches(
     >>> options = {"frequencies": (20, 60), "temperatures": (298.15, 400)}
     >>> steady_branches("piezo_stack", inputs=lambda f: {"V_in": sine(10, f)}, **options)
     Branches(curves: 1, points: 14, jumps: none)
+
+    Of the result, ``.table()`` is columns for a plot or a file, such as
+    ``pandas.DataFrame(found.table())``; a point ``found.curves[0][0]`` has its `.frequency`,
+    whether it is `.stable`, the state (n,) at t = 0 as ``.state.x``, and the temperatures of its
+    period as ``.state.period.mean``, `.coldest` and `.hottest`; ``found.jumps`` are the ends of
+    stable parts.
 
     Parameters
     ----------

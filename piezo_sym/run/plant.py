@@ -49,12 +49,20 @@ def read_held(module: GeneratedModule, given: Mapping[str, float] | None, step: 
 
 
 def read_quanta(
-    given: Mapping[str, float] | None, states: tuple[str, ...], outputs: tuple[str, ...]
+    given: Mapping[str, float] | None,
+    states: tuple[str, ...],
+    outputs: tuple[str, ...],
+    banks: Mapping[str, Sequence[str]],
 ) -> tuple[FloatArray | None, FloatArray | None]:
-    """Return the quanta of x (n,) and of y (ports,), 0 for rows without one; None if all are."""
+    """Return the quanta of x (n,) and of y (ports,), 0 for rows without one; None if all are.
+
+    `banks` has the lanes of each state of a bank, whose quantum is that of all lanes without one.
+    """
     where = "Stepper.quantum"
-    known = known_keys(given, (*states, *outputs), where)
+    known = known_keys(given, (*states, *outputs, *banks), where)
     sizes = {name: positive(value, f"{where}.{name}") for name, value in known.items()}
+    shared = {lane: sizes[bank] for bank in banks if bank in sizes for lane in banks[bank]}
+    sizes = shared | sizes
     x, y = (np.array([sizes.get(name, 0.0) for name in names]) for names in (states, outputs))
     return x if np.any(x) else None, y if np.any(y) else None
 

@@ -68,7 +68,7 @@ class Stepper:
         plants: each array has a last axis for them.
     every : steps of a call, its inputs held: the sample time is every*step.
     delay : calls until inputs act; those at t = 0 act until then.
-    quantum : state, or output as `y_<port>` -> quantum of its measurement, SI units.
+    quantum : state, a lane's, a bank's or an output `y_<port>` -> quantum of its measurement, SI.
 
     Attributes
     ----------
@@ -123,7 +123,8 @@ class Stepper:
         self._calls = calls_of(self._plants, integer(every, "Stepper.every", 1))
         self._at = ctypes.byref(self._calls)
         self._once, self._forget = map(self._plants[0].function, ("step_once", "forget"))
-        self._x_quanta, self._y_quanta = read_quanta(quantum, self.states, self.outputs)
+        banks = {r.name: row_names([r], values[0]) for r in module.STATES if r.bank}
+        self._x_quanta, self._y_quanta = read_quanta(quantum, self.states, self.outputs, banks)
         kept = integer(delay, "Stepper.delay", 0, MOST_DELAY) + 1
         self._first, self._late = self._u.copy(), np.zeros((kept, *self._u.shape))
         self._direct = not (self._many or delay)

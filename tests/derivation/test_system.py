@@ -131,3 +131,10 @@ def test_entries_by_label_and_by_place(iphs):
         J0["phi", "Q_c"]
     with pytest.raises(Exception, match="'9' is no row"):
         J0[9, 0]
+
+
+def test_symbols_are_a_mapping_of_names(iphs):
+    found = dict(iphs.symbols)
+    assert {"q", "phi", "V_in", "lam"} <= found.keys() == set(iphs.symbols.keys())
+    assert found["q"] in iphs.symbols.values()
+    assert ("q" in iphs.symbols, "absent" in iphs.symbols) == (True, False)

@@ -122,6 +122,17 @@ def test_a_measurement_is_a_multiple_of_its_quantum():
     assert np.array_equal(exact.measured, exact.x)
 
 
+def test_a_bank_has_one_quantum_unless_a_lane_has_its_own():
+    stepper = Stepper("piezo_stack", step=H, quantum={"phi": 1e-4, "phi_2": 1e-5})
+    for _ in range(200):
+        stepper.step(U)
+    place = stepper.states.index("phi_1")
+    exact = stepper.x[place : place + 2]
+    wanted = np.round(exact / [1e-4, 1e-5]) * [1e-4, 1e-5]
+    assert stepper.measured[place : place + 2] == pytest.approx(wanted, abs=1e-15)
+    assert np.all(wanted != 0.0)
+
+
 def test_a_call_that_fails_changes_no_plant():
     """The second plant's environment is too cold; the first has been stepped by then, or not."""
     plants = [{"T_0": 296.15}, {"T_0": 297.0}]
