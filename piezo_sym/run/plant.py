@@ -19,7 +19,7 @@ from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.records import POINTER, at, c_record
 from piezo_sym.run.guard import check_start, domain_error, input_conditions
 from piezo_sym.run.inputs import Inputs, read_inputs
-from piezo_sym.run.module import GeneratedModule, lanes
+from piezo_sym.run.module import GeneratedModule, lanes, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.signals import Constant
 from piezo_sym.run.system import DrivenModule
@@ -49,15 +49,14 @@ def read_held(module: GeneratedModule, given: Mapping[str, float] | None, step: 
 
 
 def read_quanta(
-    given: Mapping[str, float] | None,
-    states: tuple[str, ...],
-    outputs: tuple[str, ...],
-    banks: Mapping[str, Sequence[str]],
+    given: Mapping[str, float] | None, module: GeneratedModule, p: Any, outputs: tuple[str, ...]
 ) -> tuple[FloatArray | None, FloatArray | None]:
     """Return the quanta of x (n,) and of y (ports,), 0 for rows without one; None if all are.
 
-    `banks` has the lanes of each state of a bank, whose quantum is that of all lanes without one.
+    That of a bank's state is the quantum of all lanes that have none of their own.
     """
+    states = row_names(module.STATES, p)
+    banks = {record.name: row_names([record], p) for record in module.STATES if record.bank}
     where = "Stepper.quantum"
     known = known_keys(given, (*states, *outputs, *banks), where)
     sizes = {name: positive(value, f"{where}.{name}") for name, value in known.items()}

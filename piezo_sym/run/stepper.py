@@ -123,8 +123,7 @@ class Stepper:
         self._calls = calls_of(self._plants, integer(every, "Stepper.every", 1))
         self._at = ctypes.byref(self._calls)
         self._once, self._forget = map(self._plants[0].function, ("step_once", "forget"))
-        banks = {r.name: row_names([r], values[0]) for r in module.STATES if r.bank}
-        self._x_quanta, self._y_quanta = read_quanta(quantum, self.states, self.outputs, banks)
+        self._x_quanta, self._y_quanta = read_quanta(quantum, module, values[0], self.outputs)
         kept = integer(delay, "Stepper.delay", 0, MOST_DELAY) + 1
         self._first, self._late = self._u.copy(), np.zeros((kept, *self._u.shape))
         self._direct = not (self._many or delay)
