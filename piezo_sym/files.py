@@ -15,9 +15,6 @@ from typing import Any
 
 from piezo_sym.errors import FileError, UsageError, nearest, one_line, quote
 
-#: The remedy for a result that would replace another: none does, unless it is deleted.
-ANOTHER = "choose another path, or delete it"
-
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file as UTF-8 atomically: readers see the old file or the new one."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from os.path import lexists
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -22,7 +21,7 @@ from piezo_sym.errors import (
     UsageError,
     listing,
 )
-from piezo_sym.files import ANOTHER, near_file, path_text, write_bytes, zarr_library
+from piezo_sym.files import near_file, path_text, write_bytes, zarr_library
 
 if TYPE_CHECKING:
     import xarray
@@ -79,7 +78,7 @@ def simulate(
         bool, option("Damp what rings after a jump of an input.", "--dissipative-start")
     ] = False,
     out: Annotated[
-        Path | None, option("A new .nc (NetCDF), .csv or .zarr (a store, written as it goes).")
+        Path | None, option("A .nc or .csv, which is replaced, or a new .zarr, written as it goes.")
     ] = None,
 ) -> None:
     """Simulate a spec's generated module and print its last values.
@@ -91,7 +90,7 @@ def simulate(
     first column, joined by straight lines, whose header may say units: t [ms],V_in [kV]. Of several
     columns the one named like the input counts.
     """
-    _check_out(out, events)
+    _check_ending(out, events)
     units = Units(spec)
     signals = dict(pairs(inputs or (), "--input", units.signal))
     span = {"duration": duration, "t0": t0, "times": times, "stop": stop}
@@ -171,15 +170,12 @@ def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
         raise FileError("is no run that can go on", path_text(path), remedy=remedy) from cause
 
 
-def _check_out(out: Path | None, events: list[str] | None) -> None:
-    """Refuse a result that cannot be written, or would replace a file or store."""
+def _check_ending(out: Path | None, events: list[str] | None) -> None:
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
     if out is not None and out.suffix == ".csv" and events:
         what = f"{path_text(out)}, a table over time, has no place for events"
         raise UsageError(what, "--out", "a file ending in .nc")
-    if out is not None and lexists(out):
-        raise FileError("exists already", path_text(out), remedy=ANOTHER)
 
 
 @contextmanager

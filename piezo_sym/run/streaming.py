@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from piezo_sym.errors import FileError, RunError, UsageError, quote
-from piezo_sym.files import ANOTHER, path_text, zarr_library
+from piezo_sym.files import path_text, zarr_library
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.events import read_watched
 from piezo_sym.run.module import row_count
@@ -101,7 +101,8 @@ def _new_store(store: object) -> Path:
         remedy = "name it *.zarr; other files: to_netcdf() of a run in memory"
         raise UsageError(f"{path_text(path)} is no Zarr store", WHERE, remedy=remedy)
     if path.exists():
-        raise FileError("exists already", path_text(path), remedy=ANOTHER)
+        remedy = "choose another path, or delete it"
+        raise FileError("exists already", path_text(path), remedy=remedy)
     zarr_library(WHERE)
     return path
 

@@ -74,14 +74,20 @@ def test_a_netcdf_file_holds_the_result(call, expected, tmp_path):
         assert result.attrs["parameter_L"] == 5e-4
 
 
-@pytest.mark.parametrize("name", ["run.csv", "run.nc", "run.zarr"])
-def test_a_result_replaces_nothing(call, tmp_path, name):
+@pytest.mark.parametrize("name", ["run.csv", "run.nc"])
+def test_a_file_is_replaced(call, tmp_path, name):
     path = tmp_path / name
-    path.write_text("kept")
+    path.write_text("old")
+    assert call(*SHORT, "--out", path).code == 0
+    assert path.read_bytes() != b"old"
+
+
+def test_a_store_is_not_replaced(call, tmp_path):
+    path = tmp_path / "run.zarr"
+    path.mkdir()
     answer = call(*SHORT, "--out", path)
     assert answer.code == 2
-    assert f"{name}': exists already; choose another path, or delete it" in answer.err
-    assert path.read_text() == "kept"
+    assert "run.zarr': exists already; choose another path, or delete it" in answer.err
 
 
 def test_a_result_leaves_no_other_file(call, tmp_path):
