@@ -26,16 +26,10 @@ class Equation:
 @final
 @dataclass(eq=False)
 class SingularError(Exception):
-    """Equations that do not fix every unknown.
+    """Equations that do not fix every unknown."""
 
-    Attributes
-    ----------
-    relations : combinations of givens that the equations force to be zero.
-    undetermined : unknowns that nothing fixes.
-    """
-
-    relations: list[Form]
-    undetermined: list[Any]
+    relations: list[Form]  # combinations of givens that the equations force to be zero
+    undetermined: list[Any]  # unknowns that nothing fixes
 
 
 @final

@@ -72,19 +72,13 @@ class Raised(sp.Function):  # type: ignore[misc]
 @final
 @dataclass(frozen=True)
 class SymbolTable(Mapping[str, sp.Symbol]):
-    """The symbols of a circuit, by name.
+    """The symbols of a circuit, by name."""
 
-    Attributes
-    ----------
-    symbols : the symbol of every name; that of a bank's quantity is a `LaneSymbol`.
-    banks : the bank of each lane symbol.
-    counts : the size symbol of each bank.
-    keep_tables : whether a `table` stays one function instead of its pieces, for display.
-    """
-
+    #: The symbol of every name; that of a bank's quantity is a `LaneSymbol`.
     symbols: Mapping[str, sp.Symbol]
-    banks: Mapping[LaneSymbol, str]
-    counts: Mapping[str, sp.Symbol]
+    banks: Mapping[LaneSymbol, str]  # the bank of each lane symbol
+    counts: Mapping[str, sp.Symbol]  # the size symbol of each bank
+    #: Whether a `table` stays one function instead of its pieces, for display.
     keep_tables: bool = False
 
     def __getitem__(self, name: str) -> sp.Symbol:

@@ -30,26 +30,17 @@ from piezo_sym.spec.elements.ports import Body, Storage
 @final
 @dataclass(frozen=True)
 class Stage:
-    """What a stage computes.
+    """What a stage computes."""
 
-    Attributes
-    ----------
-    quantities : in an order in which they can be computed.
-    rates : of each state.
-    booked : the rows of the ledger: power of each port, heat and entropy production of processes,
-        entropy rate of heat exchanges.
-    switches : of the laws, in order.
-    limits : the conditions of the domain that depend on the state.
-    taken : every name in use.
-    bends : functions whose sign changes where an integrand of `means` has a kink.
-    """
-
-    quantities: tuple[Quantity, ...]
-    rates: tuple[OutputRow, ...]
+    quantities: tuple[Quantity, ...]  # in an order in which they can be computed
+    rates: tuple[OutputRow, ...]  # of each state
+    #: The rows of the ledger: power of each port, heat and entropy production of processes, entropy
+    #: rate of heat exchanges.
     booked: tuple[OutputRow, ...]
-    switches: tuple[Switch, ...]
-    limits: tuple[Limit, ...]
-    taken: frozenset[str]
+    switches: tuple[Switch, ...]  # of the laws, in order
+    limits: tuple[Limit, ...]  # the conditions of the domain that depend on the state
+    taken: frozenset[str]  # every name in use
+    #: Functions whose sign changes where an integrand of `means` has a kink.
     bends: tuple[OutputRow, ...] = ()
 
 
@@ -67,22 +58,16 @@ class Slopes:
 @final
 @dataclass(frozen=True)
 class Collocation:
-    """A collocation step of a system.
+    """A collocation step of a system."""
 
-    Attributes
-    ----------
-    means : the functions of the state whose weighted means a stage is given.
-    heated : the row of the entropy that takes the loss of a dissipative step, that of the first
-        body; -1 if there is no body, or no store that could lose energy.
-    jumps : whether a law is declared discontinuous.
-    paths : the path functionals, whose values a stage is given after the means.
-    """
-
-    means: tuple[Quantity, ...]
+    means: tuple[Quantity, ...]  # the functions of the state whose weighted means a stage is given
     stage: Stage
     slopes: Slopes
+    #: The row of the entropy that takes the loss of a dissipative step, that of the first body; -1
+    #: if there is no body, or no store that could lose energy.
     heated: int
-    jumps: bool
+    jumps: bool  # whether a law is declared discontinuous
+    #: The path functionals, whose values a stage is given after the means.
     paths: tuple[Path, ...] = ()
 
 

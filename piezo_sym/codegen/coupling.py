@@ -35,19 +35,12 @@ class PlacedSlope:
 @final
 @dataclass(frozen=True)
 class Bank:
-    """The equations of the lanes of a bank.
-
-    Attributes
-    ----------
-    states : the states of a lane, by their place among all states.
-    columns : the shared unknowns in a lane's equations.
-    rows : the shared equations in which a lane's states occur.
-    """
+    """The equations of the lanes of a bank."""
 
     name: str
-    states: tuple[int, ...]
-    columns: tuple[int, ...]
-    rows: tuple[int, ...]
+    states: tuple[int, ...]  # the states of a lane, by their place among all states
+    columns: tuple[int, ...]  # the shared unknowns in a lane's equations
+    rows: tuple[int, ...]  # the shared equations in which a lane's states occur
 
 
 @final
@@ -57,46 +50,31 @@ class Elimination:
 
     A printed step has it as tables of numbers instead of a statement per entry, so that the text
     stays short for a network of 600 states.
-
-    Attributes
-    ----------
-    slots : the number of each entry, fill-in included.
-    order : the unknowns, first to last.
-    below : for each pivot in order, row and slot of each later entry in its column.
-    right : for each pivot in order, column and slot of each later entry in its row.
-    updates : the slots that each pivot changes: rows `below` by columns `right`, row by row.
     """
 
-    slots: dict[Place, int]
-    order: tuple[int, ...]
+    slots: dict[Place, int]  # the number of each entry, fill-in included
+    order: tuple[int, ...]  # the unknowns, first to last
+    #: For each pivot in order, row and slot of each later entry in its column.
     below: tuple[tuple[int, ...], ...]
+    #: For each pivot in order, column and slot of each later entry in its row.
     right: tuple[tuple[int, ...], ...]
+    #: The slots that each pivot changes: rows `below` by columns `right`, row by row.
     updates: tuple[int, ...]
 
 
 @final
 @dataclass(frozen=True)
 class StepCoupling:
-    """The structure of a step's equations.
+    """The structure of a step's equations."""
 
-    Attributes
-    ----------
-    places : the slopes with their places.
-    sizes : for each bank, the number of rows of slopes of its lanes.
-    states : the shared states, by their place among all states; borders come after them.
-    borders : the number of borders.
-    entries : (row, column) of each slope between shared states.
-    banks : in the order of the program.
-    elimination : of the shared unknowns.
-    """
-
-    places: tuple[PlacedSlope, ...]
-    sizes: Mapping[str, int]
+    places: tuple[PlacedSlope, ...]  # the slopes with their places
+    sizes: Mapping[str, int]  # for each bank, the number of rows of slopes of its lanes
+    #: The shared states, by their place among all states; borders come after them.
     states: tuple[int, ...]
-    borders: int
-    entries: tuple[Place, ...]
-    banks: tuple[Bank, ...]
-    elimination: Elimination
+    borders: int  # the number of borders
+    entries: tuple[Place, ...]  # (row, column) of each slope between shared states
+    banks: tuple[Bank, ...]  # in the order of the program
+    elimination: Elimination  # of the shared unknowns
 
     def tables(self, name: str) -> Iterator[str]:
         """Yield the tables in C."""

@@ -23,15 +23,10 @@ SPELLED = 2
 @final
 @dataclass(frozen=True)
 class Places:
-    """The places of slots in a vector.
+    """The places of slots in a vector."""
 
-    Attributes
-    ----------
-    slots : one per row, or one for the rows of a bank.
-    ends : names of the ends of banks, by slot number; empty if sizes are added up in each index.
-    """
-
-    slots: Sequence[Slot]
+    slots: Sequence[Slot]  # one per row, or one for the rows of a bank
+    #: Names of the ends of banks, by slot number; empty if sizes are added up in each index.
     ends: dict[int, str] = field(default_factory=dict)
 
     def position(self, n: int) -> str:

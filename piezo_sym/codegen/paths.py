@@ -22,25 +22,15 @@ from piezo_sym.spec.elements.ports import Conductor, DissipativePort, Storage
 @final
 @dataclass(frozen=True)
 class Path:
-    """A stop, or one in each lane of a bank.
+    """A stop, or one in each lane of a bank."""
 
-    Attributes
-    ----------
-    inner : the inner state; its rate is `drive` - `slip`, its energy stiffness*inner**2/2.
-    bank : of the inner state.
-    drive : the rate of the coordinate, in quantities that do not depend on paths.
-    own : whether each lane has its own drive.
-    stiffness : in parameters.
-    limit : of the inner state, >= 0, at the beginning of a step.
-    effort, slip, heat, share : the names of the means and the share that stages are given.
-    """
-
-    inner: str
-    bank: str | None
-    drive: Expr
-    own: bool
-    stiffness: Expr
-    limit: Expr
+    inner: str  # the inner state; its rate is `drive` - `slip`, its energy stiffness*inner**2/2
+    bank: str | None  # of the inner state
+    drive: Expr  # the rate of the coordinate, in quantities that do not depend on paths
+    own: bool  # whether each lane has its own drive
+    stiffness: Expr  # in parameters
+    limit: Expr  # of the inner state, >= 0, at the beginning of a step
+    #: effort, slip, heat, share: the names of the means and the share that stages are given.
     effort: str
     slip: str
     heat: str

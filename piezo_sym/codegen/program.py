@@ -69,18 +69,11 @@ class Described:
 @final
 @dataclass(frozen=True)
 class OutputRow:
-    """One row of a result.
+    """One row of a result."""
 
-    Attributes
-    ----------
-    slot : the row, or for a bank one row per lane.
-    value : one, or for a bank one per lane.
-    listed : the values of the lanes instead, if the spec lists them.
-    """
-
-    slot: Slot
-    value: Expr
-    listed: tuple[Expr, ...] = ()
+    slot: Slot  # the row, or for a bank one row per lane
+    value: Expr  # one, or for a bank one per lane
+    listed: tuple[Expr, ...] = ()  # the values of the lanes instead, if the spec lists them
 
 
 @final
@@ -95,19 +88,13 @@ class Outer:
 @final
 @dataclass(frozen=True)
 class Entry:
-    """One entry of a Jacobian.
+    """One entry of a Jacobian."""
 
-    Attributes
-    ----------
-    row, col : places among the states.
-    value : of that pair; with two banks, of equal lanes of one bank (the diagonal).
-    outer : further products over all pairs of lanes of the two banks.
-    """
-
+    #: row, col: places among the states.
     row: int
     col: int
-    value: Expr
-    outer: tuple[Outer, ...] = ()
+    value: Expr  # of that pair; with two banks, of equal lanes of one bank (the diagonal)
+    outer: tuple[Outer, ...] = ()  # further products over all pairs of lanes of the two banks
 
 
 @final
@@ -135,25 +122,15 @@ class Limit:
 @final
 @dataclass(frozen=True)
 class Program:
-    """All that a generated module holds.
+    """All that a generated module holds."""
 
-    Attributes
-    ----------
-    name, title, source, sha256, verdict : for the head.
-    parameters, inputs, states, outputs, processes, bodies, elements : fields in their order.
-    defaults : values of parameters (a tuple: one per lane) and inputs, as they are printed.
-    banks : names, in order.
-    quantities : in an order in which they can be computed.
-    functions, limits : what the module offers.
-    jacobian : the derivative of `rhs` by the state; an entry that is not listed is zero.
-    taken : every name in use, so that printers can add their own.
-    """
-
+    #: name, title, source, sha256, verdict: for the head.
     name: str
     title: str
     source: str
     sha256: str
     verdict: str
+    #: parameters, inputs, states, outputs, processes, bodies, elements: fields in their order.
     parameters: tuple[Described, ...]
     inputs: tuple[Described, ...]
     states: tuple[Described, ...]
@@ -161,13 +138,15 @@ class Program:
     processes: tuple[Described, ...]
     bodies: tuple[Described, ...]
     elements: tuple[Described, ...]
+    #: Values of parameters (a tuple: one per lane) and inputs, as they are printed.
     defaults: Mapping[str, str | tuple[str, ...]]
-    counts: Mapping[str, int]
-    quantities: tuple[Quantity, ...]
-    functions: tuple[ModuleFunction, ...]
+    counts: Mapping[str, int]  # sizes of banks, in order
+    quantities: tuple[Quantity, ...]  # in an order in which they can be computed
+    functions: tuple[ModuleFunction, ...]  # what the module offers, with `limits`
+    #: The derivative of `rhs` by the state; an entry that is not listed is zero.
     jacobian: tuple[Entry, ...]
     limits: tuple[Limit, ...]
-    taken: frozenset[str]
+    taken: frozenset[str]  # every name in use, so that printers can add their own
 
     def lane_names(self) -> dict[str, str]:
         """Return the bank of every name that has a value per lane."""

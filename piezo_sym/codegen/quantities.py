@@ -40,30 +40,21 @@ Excesses = Mapping[tuple[Sym, Sym], Quantity]
 @final
 @dataclass(frozen=True)
 class Quantities:
-    """The quantities of a system.
-
-    Attributes
-    ----------
-    defined : in an order in which they can be computed.
-    costates : of each state; a body's is its temperature.
-    inputs : of each port.
-    forces, drives, outputs, heats : of each process, its driving force, the conjugate variable z,
-        the output W, and the heat W z.
-    limits : the conditions of the domain.
-    taken : every name in use.
-    given : the bank of each given name, one that is no quantity, with a value per lane.
-    """
+    """The quantities of a system."""
 
     iphs: IPHS
-    defined: tuple[Quantity, ...]
-    costates: tuple[Sym, ...]
-    inputs: tuple[Sym, ...]
+    defined: tuple[Quantity, ...]  # in an order in which they can be computed
+    costates: tuple[Sym, ...]  # of each state; a body's is its temperature
+    inputs: tuple[Sym, ...]  # of each port
+    #: forces, drives, outputs, heats: of each process, its driving force, the conjugate variable z,
+    #: the output W, and the heat W z.
     forces: tuple[Expr, ...]
     drives: tuple[Expr, ...]
     outputs: tuple[Sym, ...]
     heats: tuple[Expr, ...]
-    limits: tuple[Limit, ...]
-    taken: frozenset[str]
+    limits: tuple[Limit, ...]  # the conditions of the domain
+    taken: frozenset[str]  # every name in use
+    #: The bank of each given name, one that is no quantity, with a value per lane.
     given: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property

@@ -22,39 +22,24 @@ NOTE = "switching functions"
 @final
 @dataclass(frozen=True)
 class Switch:
-    """A comparison: the name of its branch, and the switching function whose sign decides it.
-
-    Attributes
-    ----------
-    bank : the bank with one branch per lane, or None.
-    strict : whether the branch is 0 where the switching function is zero.
-    """
+    """A comparison: the name of its branch, and the switching function whose sign decides it."""
 
     branch: str
     value: Sym
-    bank: str | None
-    strict: bool
+    bank: str | None  # the bank with one branch per lane, or None
+    strict: bool  # whether the branch is 0 where the switching function is zero
 
 
 @final
 @dataclass(frozen=True)
 class SwitchedValues:
-    """Values whose choices are made by branches.
+    """Values whose choices are made by branches."""
 
-    Attributes
-    ----------
-    quantities : each after the switching functions that it needs.
-    rows : in the order given.
-    switches : in the order in which they are met.
-    bends : functions whose sign changes where a mean has a kink.
-    lanes : the bank of every name that has a value per lane.
-    """
-
-    quantities: tuple[Quantity, ...]
-    rows: tuple[OutputRow, ...]
-    switches: tuple[Switch, ...]
-    bends: tuple[OutputRow, ...]
-    lanes: Mapping[str, str]
+    quantities: tuple[Quantity, ...]  # each after the switching functions that it needs
+    rows: tuple[OutputRow, ...]  # in the order given
+    switches: tuple[Switch, ...]  # in the order in which they are met
+    bends: tuple[OutputRow, ...]  # functions whose sign changes where a mean has a kink
+    lanes: Mapping[str, str]  # the bank of every name that has a value per lane
 
 
 def switched_values(

@@ -57,20 +57,13 @@ def times(left: Dimension, right: Dimension, power: Fraction | int = 1) -> Dimen
 @final
 @dataclass(frozen=True)
 class Match:
-    """One rule at one place of a tree: two dimensions that must be equal.
+    """One rule at one place of a tree: two dimensions that must be equal."""
 
-    Attributes
-    ----------
-    node : the smallest term that contains both.
-    left : the part that is checked.
-    right : the part that it must match; None if it must have the dimension `needed`.
-    needed : the dimension that left over right must have.
-    """
-
-    node: Node
-    left: Expr
+    node: Node  # the smallest term that contains both
+    left: Expr  # the part that is checked
+    #: The part that it must match; None if it must have the dimension `needed`.
     right: Expr | None = None
-    needed: Dimension = NONE
+    needed: Dimension = NONE  # the dimension that left over right must have
 
     @property
     def whole(self) -> bool:

@@ -58,20 +58,12 @@ DIMENSIONS = dict(zip(BASES, (f"[{name}]" for name in _DIMENSIONS.split()), stri
 @final
 @dataclass(frozen=True)
 class Unit:
-    """A unit of a spec.
+    """A unit of a spec."""
 
-    Attributes
-    ----------
-    text : as the spec writes it.
-    si : the coherent SI unit of the same dimension, such as ``F`` for ``uF``.
-    factor : exact; a value in this unit times `factor` is the value in coherent SI.
-    dimension : powers of kg, m, s, A, K, mol, cd.
-    """
-
-    text: str
-    si: str
-    factor: Fraction
-    dimension: tuple[Fraction, ...]
+    text: str  # as the spec writes it
+    si: str  # the coherent SI unit of the same dimension, such as ``F`` for ``uF``
+    factor: Fraction  # exact; a value in this unit times `factor` is the value in coherent SI
+    dimension: tuple[Fraction, ...]  # powers of kg, m, s, A, K, mol, cd
 
 
 def base_units(dimension: tuple[Fraction, ...]) -> str:

@@ -42,20 +42,15 @@ class Inequality:
 @final
 @dataclass(frozen=True)
 class Claim:
-    """A row that can be evaluated at a point.
+    """A row that can be evaluated at a point."""
 
-    Attributes
-    ----------
-    id, element : of the row.
-    says : its inequalities; none for rows that laws have values, or do not jump.
-    where : conditions under which the row applies.
-    zero, equal : inputs that it sets to zero, and those that it sets equal.
-    """
-
+    #: id, element: of the row.
     id: str
     element: str
+    #: Its inequalities; none for rows that laws have values, or do not jump.
     says: tuple[Inequality, ...] = ()
-    where: tuple[Cmp, ...] = ()
+    where: tuple[Cmp, ...] = ()  # conditions under which the row applies
+    #: zero, equal: inputs that it sets to zero, and those that it sets equal.
     zero: tuple[str, ...] = ()
     equal: tuple[str, ...] = ()
 

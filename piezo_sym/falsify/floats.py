@@ -44,19 +44,13 @@ COMPARED: Mapping[str, Callable[..., Any]] = {
 @final
 @dataclass(frozen=True, slots=True)
 class Approx:
-    """A law in floats.
+    """A law in floats."""
 
-    Attributes
-    ----------
-    value : of the law.
-    size : the sum of the absolute values of its terms; value/size distinguishes cancellation from a
-        change of sign.
-    lost : mask of the points where it has no value on the branch taken.
-    """
-
-    value: Any
+    value: Any  # of the law
+    #: The sum of the absolute values of its terms; value/size distinguishes cancellation from a
+    #: change of sign.
     size: Any
-    lost: Any = False
+    lost: Any = False  # mask of the points where it has no value on the branch taken
 
 
 @final

@@ -35,19 +35,15 @@ ZERO = -1e-300
 @final
 @dataclass(frozen=True)
 class Attack:
-    """The result for a row.
+    """The result for a row."""
 
-    Attributes
-    ----------
-    id, element : of the row.
-    points : the number of points inside the domain at which it held, rounded down to one digit, as
-        it is published and a few points may fall outside on another processor.
-    worst : values by name at a point where the row is false in floats, though not exactly, or None.
-    """
-
+    #: id, element: of the row.
     id: str
     element: str
+    #: The number of points inside the domain at which it held, rounded down to one digit, as it is
+    #: published and a few points may fall outside on another processor.
     points: int
+    #: Values by name at a point where the row is false in floats, though not exactly, or None.
     worst: Mapping[str, str] | None = None
 
 

@@ -54,16 +54,10 @@ class Roots:
 @final
 @dataclass(eq=False)
 class Draw:
-    """A source of points of a space.
+    """A source of points of a space."""
 
-    Attributes
-    ----------
-    space : the space of the points.
-    known : points inside the domain to start from; the first has the spec's own values.
-    """
-
-    space: Space
-    known: Array
+    space: Space  # the space of the points
+    known: Array  # points inside the domain to start from; the first has the spec's own values
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(16))
     roots: list[Roots] = field(default_factory=list)
 

@@ -67,22 +67,16 @@ class Edge:
 @final
 @dataclass(frozen=True)
 class Probe:
-    """The trees of a system.
+    """The trees of a system."""
 
-    Attributes
-    ----------
-    iphs : the system.
-    defined : the tree of each name.  Names with a space are results of the module's functions: the
-        heat and the production of a process, the rate of a state, the temperature of a body.
-    laws : by (kind, element): output and effort of a process, conductance, temperature and slope of
-        a body, costate, ratio; the divisors of the junction have the element "".
-    edges : expressions near whose zeros rows may be false.
-    """
-
-    iphs: IPHS
+    iphs: IPHS  # the system
+    #: The tree of each name.  Names with a space are results of the module's functions: the heat
+    #: and the production of a process, the rate of a state, the temperature of a body.
     defined: Mapping[str, Row]
+    #: By (kind, element): output and effort of a process, conductance, temperature and slope of a
+    #: body, costate, ratio; the divisors of the junction have the element "".
     laws: Mapping[tuple[str, str], Row]
-    edges: tuple[Edge, ...]
+    edges: tuple[Edge, ...]  # expressions near whose zeros rows may be false
 
     def law(self, what: str, element: str) -> Row:
         """Return a law, written out if it is a name."""

@@ -91,20 +91,12 @@ def _input(port: object, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
 @final
 @dataclass(frozen=True)
 class Energy:
-    """The energy [J] of one store, or of stores that share one.
+    """The energy [J] of one store, or of stores that share one."""
 
-    Attributes
-    ----------
-    law : a function of states and parameters.
-    rows : the indices of the states that it depends on.
-    bank : the bank, if each of its lanes has such an energy.
-    derived : whether it was integrated from a co-state law; else the spec gives it.
-    """
-
-    law: Expr
-    rows: tuple[int, ...]
-    bank: str | None
-    derived: bool
+    law: Expr  # a function of states and parameters
+    rows: tuple[int, ...]  # the indices of the states that it depends on
+    bank: str | None  # the bank, if each of its lanes has such an energy
+    derived: bool  # whether it was integrated from a co-state law; else the spec gives it
 
 
 def energies_of(circuit: Circuit) -> tuple[Energy, ...]:

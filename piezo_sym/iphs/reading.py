@@ -23,21 +23,13 @@ Print = Callable[[sp.Expr], str]
 @final
 @dataclass(frozen=True)
 class Reading:
-    """A system with what its display needs.
+    """A system with what its display needs."""
 
-    Attributes
-    ----------
-    system : in named co-states.
-    energies : the terms of the Hamiltonian, as functions of the state.
-    written : names replaced by their definitions, such as a velocity by p/M.
-    named : names kept, and defined after the equations.
-    spelled : the definition of a law output as the spec spells it, for plain text.
-    """
-
-    system: System
-    energies: tuple[sp.Expr, ...]
-    written: Pairs
-    named: Pairs
+    system: System  # in named co-states
+    energies: tuple[sp.Expr, ...]  # the terms of the Hamiltonian, as functions of the state
+    written: Pairs  # names replaced by their definitions, such as a velocity by p/M
+    named: Pairs  # names kept, and defined after the equations
+    #: The definition of a law output as the spec spells it, for plain text.
     spelled: Mapping[sp.Symbol, str]
 
     def write(self, expr: sp.Expr) -> sp.Expr:

@@ -22,35 +22,24 @@ from piezo_sym.algebra.notation import Entries
 @final
 @dataclass(frozen=True)
 class System:
-    """An irreversible port-Hamiltonian system in named co-states.
+    """An irreversible port-Hamiltonian system in named co-states."""
 
-    Attributes
-    ----------
-    states, processes, ports : slots.
-    E : co-states dU/dx, a vector over states.
-    dS : gradient of the total entropy, a vector over states: 1 at each body's entropy.
-    u : the inputs of Definition 1, over ports; a heat exchange enters as lam*(T_e/T - 1).
-    W : law outputs, over processes.
-    heats : for each process the row of the entropy that it increases.
-    J0 : structure matrix of the energy-preserving elements, states by states.
-    B, D : columns b_k, d_k of the processes: z = B^T E + D^T u is conjugate to W.
-    G : input map of the junction laws, states by ports.
-    N : direct coupling of ports, skew: a current source at a voltage source.
-    """
-
+    #: states, processes, ports: slots.
     states: tuple[Slot, ...]
     processes: tuple[Slot, ...]
     ports: tuple[Slot, ...]
-    E: LaneMatrix
-    dS: LaneMatrix
+    E: LaneMatrix  # co-states dU/dx, a vector over states
+    dS: LaneMatrix  # gradient of the total entropy, a vector over states: 1 at each body's entropy
+    #: The inputs of Definition 1, over ports; a heat exchange enters as lam*(T_e/T - 1).
     u: LaneMatrix
-    W: LaneMatrix
-    heats: tuple[int, ...]
-    J0: LaneMatrix
+    W: LaneMatrix  # law outputs, over processes
+    heats: tuple[int, ...]  # for each process the row of the entropy that it increases
+    J0: LaneMatrix  # structure matrix of the energy-preserving elements, states by states
+    #: B, D: columns b_k, d_k of the processes: z = B^T E + D^T u is conjugate to W.
     B: LaneMatrix
     D: LaneMatrix
-    G: LaneMatrix
-    N: LaneMatrix
+    G: LaneMatrix  # input map of the junction laws, states by ports
+    N: LaneMatrix  # direct coupling of ports, skew: a current source at a voltage source
 
     @cached_property
     def R(self) -> LaneMatrix:

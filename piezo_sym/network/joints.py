@@ -36,18 +36,14 @@ TWO = Num(Fraction(2))
 @final
 @dataclass(frozen=True)
 class Member:
-    """A store that is joined with others.
+    """A store that is joined with others."""
 
-    Attributes
-    ----------
-    element, store : as the spec declares it.
-    shares : its row of Z, by which its co-state is a sum of those of the kept stores.
-    compliance, rest : 1/Q and x_0: its co-state is (x - x_0)/compliance.
-    """
-
+    #: element, store: as the spec declares it.
     element: str
     store: Storage
+    #: Its row of Z, by which its co-state is a sum of those of the kept stores.
     shares: tuple[Expr, ...]
+    #: compliance, rest: 1/Q and x_0: its co-state is (x - x_0)/compliance.
     compliance: Expr
     rest: Expr
 

@@ -33,33 +33,27 @@ from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, HeatInput, 
 @final
 @dataclass(frozen=True)
 class Junction:
-    """The linear structure of a network; the module's docstring has the equations.
+    """The linear structure of a network; the module's docstring has the equations."""
 
-    Attributes
-    ----------
-    circuit : the circuit, in the causality that the junction laws allow.
-    states, processes, ports : slots; ports are ordered by their input, then by declaration.
-    J0, B, D, g, N : matrices over them, their entries rational in the ratios, slopes and shares.
-    slopes, shares : the symbols of resistive loops, see `Loops`.
-    joints : the groups of stores that were joined into the states of some.
-    couplings : across_1 (of a transformer: through_1) and across_2 of each coupling, over the
-        co-states E, the law outputs W, the inputs u, and the rates "R" of followers.
-    divisors : the divisors of the solution; the structure exists where none is zero.
-    """
-
-    circuit: Circuit
+    circuit: Circuit  # the circuit, in the causality that the junction laws allow
+    #: states, processes, ports: slots; ports are ordered by their input, then by declaration.
     states: tuple[Slot, ...]
     processes: tuple[Slot, ...]
     ports: tuple[Slot, ...]
+    #: J0, B, D, g, N: matrices over them, their entries rational in the ratios, slopes and shares.
     J0: LaneMatrix
     B: LaneMatrix
     D: LaneMatrix
     g: LaneMatrix
     N: LaneMatrix
+    #: slopes, shares: the symbols of resistive loops, see `Loops`.
     slopes: tuple[Slope, ...]
     shares: tuple[Definition, ...]
-    joints: tuple[Joint, ...]
+    joints: tuple[Joint, ...]  # the groups of stores that were joined into the states of some
+    #: Across_1 (of a transformer: through_1) and across_2 of each coupling, over the co-states E,
+    #: the law outputs W, the inputs u, and the rates "R" of followers.
     couplings: Mapping[str, LaneMatrix]
+    #: The divisors of the solution; the structure exists where none is zero.
     divisors: tuple[sp.Expr, ...]
 
 

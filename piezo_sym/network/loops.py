@@ -49,22 +49,15 @@ class Slope:
 @final
 @dataclass(frozen=True)
 class Loops:
-    """All resistive loops of a network, solved.
+    """All resistive loops of a network, solved."""
 
-    Attributes
-    ----------
-    H : shares of the driving forces, processes by processes; the identity without loops.
-    skew : the matrix G M G, processes by processes.
-    slopes : of each process in a loop.
-    shares : the symbol of each entry of H that is no number, and its value in slopes and ratios.
-    divisors : the determinants that H divides by.
-    """
-
+    #: Shares of the driving forces, processes by processes; the identity without loops.
     H: LaneMatrix
-    skew: LaneMatrix
-    slopes: tuple[Slope, ...]
+    skew: LaneMatrix  # the matrix G M G, processes by processes
+    slopes: tuple[Slope, ...]  # of each process in a loop
+    #: The symbol of each entry of H that is no number, and its value in slopes and ratios.
     shares: tuple[Definition, ...]
-    divisors: tuple[sp.Expr, ...]
+    divisors: tuple[sp.Expr, ...]  # the determinants that H divides by
 
     def columns(self, K: LaneMatrix) -> LaneMatrix:
         """Return K', for the columns K (B or D) of the processes."""

@@ -55,21 +55,14 @@ Numbers = Mapping[str, Fraction]
 @final
 @dataclass(frozen=True)
 class Domain:
-    """A domain, and a solver that decides claims on it.
+    """A domain, and a solver that decides claims on it."""
 
-    Attributes
-    ----------
-    where : the conditions of the domain.
-    order : names, in the order in which a witness should be simple.
-    solver : for what is not decided by the form of a claim.
-    known : for trees asked about so far, whether they were shown to be positive.
-    results : the solver's answers so far, in all cases of one law.
-    """
-
-    where: tuple[Cmp, ...]
-    order: tuple[str, ...]
-    solver: SolverLike
+    where: tuple[Cmp, ...]  # the conditions of the domain
+    order: tuple[str, ...]  # names, in the order in which a witness should be simple
+    solver: SolverLike  # for what is not decided by the form of a claim
+    #: For trees asked about so far, whether they were shown to be positive.
     known: dict[Expr, bool] = field(default_factory=dict)
+    #: The solver's answers so far, in all cases of one law.
     results: list[str] = field(default_factory=list)
 
     def within(self, *guards: Cmp) -> Domain:

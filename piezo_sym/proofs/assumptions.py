@@ -26,30 +26,19 @@ from piezo_sym.spec.tables import condition_text
 @final
 @dataclass(frozen=True)
 class Law:
-    """A law of an element, in names of the domain.
+    """A law of an element, in names of the domain."""
 
-    Attributes
-    ----------
-    element : its name.
-    name : of the quantity that the law gives, such as ``V_hysteron``.
-    tree : the law.
-    letter : of a dissipative law, the letter of its conjugate variable.
-    jumps : whether the spec declares it discontinuous.
-    ties : of a letter that may not take every value, its value in states; None if not known.
-    written : the laws of the spec, where the network turns the law round or joins stores.
-    rate : of a slip, the letter of the rate that drives it.
-    derived : whether it is an integrated energy, which the spec does not give.
-    """
-
-    element: str
-    name: str
-    tree: Expr
-    letter: str = ""
-    jumps: bool = False
+    element: str  # its name
+    name: str  # of the quantity that the law gives, such as ``V_hysteron``
+    tree: Expr  # the law
+    letter: str = ""  # of a dissipative law, the letter of its conjugate variable
+    jumps: bool = False  # whether the spec declares it discontinuous
+    #: Of a letter that may not take every value, its value in states; None if not known.
     ties: tuple[Cmp | None, ...] = ()
+    #: The laws of the spec, where the network turns the law round or joins stores.
     written: tuple[Expr, ...] = ()
-    rate: str = ""
-    derived: bool = False
+    rate: str = ""  # of a slip, the letter of the rate that drives it
+    derived: bool = False  # whether it is an integrated energy, which the spec does not give
 
     @property
     def of_element(self) -> str:
@@ -60,22 +49,14 @@ class Law:
 @final
 @dataclass(frozen=True)
 class Assumptions:
-    """The assumptions of questions about a model, and the order of names in a witness.
+    """The assumptions of questions about a model, and the order of names in a witness."""
 
-    Attributes
-    ----------
-    where : the domain, T > 0, and ties of names to states.
-    order : names, in the order in which a witness should be simple.
-    texts : the domain, as text.
-    warm : each temperature, and the obligation that it is positive.
-    fixed : names that are constant in a run: the parameters.
-    """
-
-    where: tuple[Cmp, ...]
-    order: tuple[str, ...]
-    texts: tuple[str, ...]
+    where: tuple[Cmp, ...]  # the domain, T > 0, and ties of names to states
+    order: tuple[str, ...]  # names, in the order in which a witness should be simple
+    texts: tuple[str, ...]  # the domain, as text
+    #: Each temperature, and the obligation that it is positive.
     warm: tuple[tuple[str, tuple[str, str]], ...] = ()
-    fixed: frozenset[str] = frozenset()
+    fixed: frozenset[str] = frozenset()  # names that are constant in a run: the parameters
 
     def about(self, *laws: Law) -> Assumptions:
         """Return the assumptions for questions about laws, with their letters and ties."""

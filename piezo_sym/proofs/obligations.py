@@ -46,37 +46,24 @@ class Meeting:
 @final
 @dataclass(frozen=True)
 class Question:
-    """A claim for all real numbers where some comparisons hold.
+    """A claim for all real numbers where some comparisons hold."""
 
-    Attributes
-    ----------
-    label : the claim in words.
-    order : names, in the order in which a witness should be simple.
-    where : the assumptions; they may have kinks and functions.
-    claim : what should follow, as a rule on one branch of a law.
-    original : the claim on the law as the spec has it, on which a witness is checked.
-    branch : those of the assumptions that select the branch.
-    meeting : of a question on the border of two branches: these; a witness must show a jump.
-    law : of a question whether a law has a value: that law; at a witness it must have none.
-    keep_all : whether all assumptions go into the query, as a counterexample needs; a proof needs
-        those that bind the names of the claim.
-    split : whether the claim is asked on each of its branches.
-    witness : whether numbers that break the claim are wanted.
-    derived : whether it is about an integrated energy; breaking that refutes no spec.
-    """
-
-    label: str
-    order: tuple[str, ...]
-    where: tuple[Cmp, ...]
-    claim: Cmp
-    original: Cmp
-    branch: tuple[Cmp, ...] = ()
+    label: str  # the claim in words
+    order: tuple[str, ...]  # names, in the order in which a witness should be simple
+    where: tuple[Cmp, ...]  # the assumptions; they may have kinks and functions
+    claim: Cmp  # what should follow, as a rule on one branch of a law
+    original: Cmp  # the claim on the law as the spec has it, on which a witness is checked
+    branch: tuple[Cmp, ...] = ()  # those of the assumptions that select the branch
+    #: Of a question on the border of two branches: these; a witness must show a jump.
     meeting: Meeting | None = None
+    #: Of a question whether a law has a value: that law; at a witness it must have none.
     law: Expr | Cmp | None = None
+    #: Whether all assumptions go into the query, as a counterexample needs; a proof needs those
+    #: that bind the names of the claim.
     keep_all: bool = False
-    split: bool = True
-    witness: bool = False
-    derived: bool = False
+    split: bool = True  # whether the claim is asked on each of its branches
+    witness: bool = False  # whether numbers that break the claim are wanted
+    derived: bool = False  # whether it is about an integrated energy; breaking that refutes no spec
 
     def __hash__(self) -> int:
         """Return a hash without the assumptions, which questions of a model share."""
@@ -163,18 +150,13 @@ class Question:
 @final
 @dataclass(frozen=True)
 class Residual:
-    """An expression that must be zero, and its name.
-
-    Attributes
-    ----------
-    empty : questions whether certain branches are empty; on all others it is zero.
-    derived : whether it is about an integrated energy.
-    """
+    """An expression that must be zero, and its name."""
 
     place: str
     expr: sp.Expr
+    #: Questions whether certain branches are empty; on all others it is zero.
     empty: tuple[Question, ...] = ()
-    derived: bool = False
+    derived: bool = False  # whether it is about an integrated energy
 
 
 def _settled(condition: Cmp, known: tuple[Cmp, ...]) -> Cmp:
@@ -197,54 +179,37 @@ def _signed(condition: Cmp) -> str:
 @final
 @dataclass(frozen=True)
 class SignOf:
-    """The claim law*letter >= 0, for methods that treat the law as a whole.
-
-    Attributes
-    ----------
-    letter : empty for a conductance: the claim is then law >= 0.
-    where : the assumptions at every point: the domain and ties of names, but no branch.
-    """
+    """The claim law*letter >= 0, for methods that treat the law as a whole."""
 
     law: Expr
-    letter: str
+    letter: str  # empty for a conductance: the claim is then law >= 0
+    #: The assumptions at every point: the domain and ties of names, but no branch.
     where: tuple[Cmp, ...] = ()
 
 
 @final
 @dataclass(frozen=True)
 class Obligation:
-    """One property of one model.
+    """One property of one model."""
 
-    Attributes
-    ----------
-    id : such as ``passive``.
-    element : the element it is about, or empty for the whole model.
-    statement, latex : the property, in words and as mathematics.
-    assumptions : the comparisons of the domain that it is stated under, as text.
-    residuals : must be zero.
-    questions : their claims must follow.
-    rests_on : other obligations, as (id, element), that must hold.
-    sign : the law whose sign the questions are about, if they are.
-    letter : a letter of which simple values are tried where questions are left open.
-    required : whether `generate` insists on it; else it is information.
-    loose : a letter that the domain may bound through a drive that is not written out: numbers for
-        it refute nothing.
-    open_because : why no questions could be asked.
-    """
-
-    id: str
-    element: str
+    id: str  # such as ``passive``
+    element: str  # the element it is about, or empty for the whole model
+    #: statement, latex: the property, in words and as mathematics.
     statement: str
     latex: str
+    #: The comparisons of the domain that it is stated under, as text.
     assumptions: tuple[str, ...] = ()
-    residuals: tuple[Residual, ...] = ()
-    questions: tuple[Question, ...] = ()
+    residuals: tuple[Residual, ...] = ()  # must be zero
+    questions: tuple[Question, ...] = ()  # their claims must follow
+    #: Other obligations, as (id, element), that must hold.
     rests_on: tuple[tuple[str, str], ...] = ()
-    sign: SignOf | None = None
-    letter: str = ""
-    required: bool = True
+    sign: SignOf | None = None  # the law whose sign the questions are about, if they are
+    letter: str = ""  # a letter of which simple values are tried where questions are left open
+    required: bool = True  # whether `generate` insists on it; else it is information
+    #: A letter that the domain may bound through a drive that is not written out: numbers for it
+    #: refute nothing.
     loose: str = ""
-    open_because: str = ""
+    open_because: str = ""  # why no questions could be asked
 
     @property
     def queries(self) -> tuple[Query, ...]:

@@ -20,21 +20,13 @@ MARK = "?"
 @final
 @dataclass(frozen=True)
 class Query:
-    """One question: whether the claim follows from what is given, for all real numbers.
+    """One question: whether the claim follows from what is given, for all real numbers."""
 
-    Attributes
-    ----------
-    label : in words, such as ``V_hysteron*i >= 0 where i > i_0``.
-    variables : names, in the order in which a witness should be simple.
-    given : clauses; in each at least one comparison holds.
-    claim : the comparison that should follow.
-    witness : whether numbers that break the claim are wanted; they cost more than the answer.
-    """
-
-    label: str
-    variables: tuple[str, ...]
-    given: tuple[Clause, ...]
-    claim: Cmp
+    label: str  # in words, such as ``V_hysteron*i >= 0 where i > i_0``
+    variables: tuple[str, ...]  # names, in the order in which a witness should be simple
+    given: tuple[Clause, ...]  # clauses; in each at least one comparison holds
+    claim: Cmp  # the comparison that should follow
+    #: Whether numbers that break the claim are wanted; they cost more than the answer.
     witness: bool = False
 
     def text(self) -> str:

@@ -55,22 +55,15 @@ class Ratio:
 @final
 @dataclass(frozen=True)
 class Part:
-    """A function, root or quotient in a law, with a symbol of its own.
+    """A function, root or quotient in a law, with a symbol of its own."""
 
-    Attributes
-    ----------
-    name, argument : of its symbol, and the argument's symbol, which equals `value`.
-    function : ``exp``, ..., ``root`` for the power `exponent` of the argument, or ``quotient``,
-        which equals its argument.
-    value : the argument, free of functions.
-    exponent : of a root, or of ``pow``.
-    """
-
-    name: str
+    name: str  # of its symbol
+    #: ``exp``, ..., ``root`` for the power `exponent` of the argument, or ``quotient``, which
+    #: equals its argument.
     function: str
-    argument: Expr
-    value: Ratio
-    exponent: Fraction | Expr = Fraction(1)
+    argument: Expr  # the argument's symbol, which equals `value`
+    value: Ratio  # the argument, free of functions
+    exponent: Fraction | Expr = Fraction(1)  # of a root, or of ``pow``
 
 
 @final

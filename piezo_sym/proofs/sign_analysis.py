@@ -75,20 +75,15 @@ def whole_sign(sign: SignOf, order: tuple[str, ...], solver: SolverLike) -> Outc
 @final
 @dataclass(frozen=True)
 class Search:
-    """The search for a proof that a law has the sign of its letter.
+    """The search for a proof that a law has the sign of its letter."""
 
-    Attributes
-    ----------
-    law, letter : the law of one case, and its letter.
-    domain : the domain with the guards of the case.
-    reasons : why functions f are left open, filled by the search.
-    negative : reduced laws of the wrong sign: the reduction, its sign, and a value of s.
-    """
-
+    #: law, letter: the law of one case, and its letter.
     law: Expr
     letter: str
-    domain: Domain
+    domain: Domain  # the domain with the guards of the case
+    #: Why functions f are left open, filled by the search.
     reasons: list[str] = field(default_factory=list)
+    #: Reduced laws of the wrong sign: the reduction, its sign, and a value of s.
     negative: list[tuple[Reduction, int, Fraction]] = field(default_factory=list)
 
     def terms(self, law: Expr) -> tuple[Term, ...] | None:

@@ -57,20 +57,13 @@ class Placed:
 @final
 @dataclass(frozen=True)
 class Circuit:
-    """The ports of a model.
+    """The ports of a model."""
 
-    Attributes
-    ----------
-    model : the spec they come from.
-    ports : in declaration order.
-    names : every name in use: parameters, inputs, states, bank sizes and the ports' quantities.
-    chains : the two ends of the chain of each bank whose lanes are in series.
-    """
-
-    model: Model
-    ports: tuple[Placed, ...]
+    model: Model  # the spec they come from
+    ports: tuple[Placed, ...]  # in declaration order
+    #: Every name in use: parameters, inputs, states, bank sizes and the ports' quantities.
     names: frozenset[str]
-    chains: Mapping[str, Branch]
+    chains: Mapping[str, Branch]  # the two ends of the chain of each bank whose lanes are in series
 
     @overload
     def of(self, kind: type[A], /) -> Iterator[tuple[Placed, A]]: ...

@@ -21,26 +21,17 @@ from piezo_sym.spec.tables import bodies, temperatures
 @final
 @dataclass(frozen=True)
 class Place:
-    """One law, input, condition or initial value of a spec.
+    """One law, input, condition or initial value of a spec."""
 
-    Attributes
-    ----------
-    where : its place in the spec, such as ``elements.damper.force``.
-    element : the element it belongs to; empty for conditions and initial values.
-    tree : the parsed law, condition or value.
-    given : the dimensions of the parameters and inputs it may use, which a user may change.
-    fixed : the dimensions of letters, states and temperatures; they take precedence over `given`.
-    needed : the dimension that a law must have; None for a condition.
-    unit : the unit text of `needed` in the kind's record; empty if there is none.
-    """
-
-    where: str
-    element: str
-    tree: Node
+    where: str  # its place in the spec, such as ``elements.damper.force``
+    element: str  # the element it belongs to; empty for conditions and initial values
+    tree: Node  # the parsed law, condition or value
+    #: The dimensions of the parameters and inputs it may use, which a user may change.
     given: Mapping[str, Dimension]
+    #: The dimensions of letters, states and temperatures; they take precedence over `given`.
     fixed: Mapping[str, Dimension]
-    needed: Dimension | None
-    unit: str = ""
+    needed: Dimension | None  # the dimension that a law must have; None for a condition
+    unit: str = ""  # the unit text of `needed` in the kind's record; empty if there is none
 
     @property
     def words(self) -> Mapping[str, Dimension]:

@@ -41,20 +41,14 @@ def lane_name(name: str, lane: int) -> str:
 @final
 @dataclass(frozen=True)
 class Template:
-    """The texts of a module, with places for its values.
+    """The texts of a module, with places for its values."""
 
-    Attributes
-    ----------
-    files : text by ending of the file's name.
-    factors : for each parameter and input, the exact factor from its unit to coherent SI.
-    quick : whether the module's own `margins` cover all checks of values that loading a spec makes.
-    verdict : in one line; it holds for all values in the domain.
-    """
-
-    files: Mapping[str, str]
+    files: Mapping[str, str]  # text by ending of the file's name
+    #: For each parameter and input, the exact factor from its unit to coherent SI.
     factors: Mapping[str, str]
+    #: Whether the module's own `margins` cover all checks of values that loading a spec makes.
     quick: bool
-    verdict: str = ""
+    verdict: str = ""  # in one line; it holds for all values in the domain
 
     def filled(self, data: Mapping[str, Any]) -> Texts:
         """Return the texts for the values of a spec, which has the template's `shape_hash`.

@@ -37,25 +37,16 @@ _WORDS = {"wide", *_COMPARISONS}
 @final
 @dataclass(frozen=True)
 class File:
-    """What the functions of a C file have in common.
-
-    Attributes
-    ----------
-    number : the type of its numbers.
-    record : the type that holds parameters.
-    signatures : of each function, what its arguments are.
-    calls : the functions of the library that may be called, and what they are.
-    results : of a function and an argument, which rows are written to it; else the function's.
-    helpers : functions of the file's own.
-    """
+    """What the functions of a C file have in common."""
 
     known: Proved
-    number: str
-    record: str
-    signatures: Mapping[str, str]
-    calls: Mapping[str, str]
+    number: str  # the type of its numbers
+    record: str  # the type that holds parameters
+    signatures: Mapping[str, str]  # of each function, what its arguments are
+    calls: Mapping[str, str]  # the functions of the library that may be called, and what they are
+    #: Of a function and an argument, which rows are written to it; else the function's.
     results: Mapping[str, str] = field(default_factory=dict)
-    helpers: dict[str, ast.FunctionDef] = field(default_factory=dict)
+    helpers: dict[str, ast.FunctionDef] = field(default_factory=dict)  # functions of the file's own
 
 
 @final
@@ -124,20 +115,14 @@ Meaning = Read | Deferred | CVariable | Place | list[Deferred]
 @final
 @dataclass(frozen=True, eq=False)
 class Scope:
-    """The names of a function, of a loop in it, or of a helper that it calls.
-
-    Attributes
-    ----------
-    roles : what each argument is: x, u, p, out, or of a stage g, b, rows, s, m.
-    names : what else a name means.
-    lanes : the variables and banks of the loops, outermost first; in a list, the number of a lane.
-    switches : what is written of switching functions, where choices are by branches alone.
-    """
+    """The names of a function, of a loop in it, or of a helper that it calls."""
 
     file: File
-    roles: Mapping[str, str]
-    names: ChainMap[str, Meaning]
+    roles: Mapping[str, str]  # what each argument is: x, u, p, out, or of a stage g, b, rows, s, m
+    names: ChainMap[str, Meaning]  # what else a name means
+    #: The variables and banks of the loops, outermost first; in a list, the number of a lane.
     lanes: tuple[tuple[str, str], ...] = ()
+    #: What is written of switching functions, where choices are by branches alone.
     switches: dict[Branch, Deferred | Value] | None = None
 
     @cached_property

@@ -32,21 +32,17 @@ _OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "=
 @final
 @dataclass(frozen=True)
 class Shape:
-    """What kind of value a text has.
+    """What kind of value a text has."""
 
-    Attributes
-    ----------
-    kind : "" for a number of one state, "whole" for an integer, "test" for a condition; for arrays
-        "maybe" (lanes, if the parameters of a bank are lists), "lanes", "row" and "column" (lanes
-        of the one or other axis of a matrix) and "pair".
-    bank, other : of the lanes; of a pair, the row's and the column's.
-    integers : whether it is a choice between equal integers. Only what is real anyway may have it
-        as a part: arrays of integers wrap round, and C divides integers as such.
-    """
-
+    #: "" for a number of one state, "whole" for an integer, "test" for a condition; for arrays
+    #: "maybe" (lanes, if the parameters of a bank are lists), "lanes", "row" and "column" (lanes of
+    #: the one or other axis of a matrix) and "pair".
     kind: str = ""
+    #: bank, other: of the lanes; of a pair, the row's and the column's.
     bank: str = ""
     other: str = ""
+    #: Whether it is a choice between equal integers. Only what is real anyway may have it as a
+    #: part: arrays of integers wrap round, and C divides integers as such.
     integers: bool = False
 
     @property
@@ -68,23 +64,16 @@ Leaf = Callable[[ast.expr], Read]
 @final
 @dataclass(frozen=True)
 class Expressions:
-    """Reads expressions.
+    """Reads expressions."""
 
-    Attributes
-    ----------
-    field : of the values.
-    numbers, real : see `Proved`.
-    leaf : reads what the language or its names give a meaning: names, subscripts, other calls.
-    functions : the name of each function in the text, and what it is.
-    whole_division : whether a quotient of integers is an integer, as in C.
-    """
-
-    field: GeneratorField
+    field: GeneratorField  # of the values
+    #: numbers, real: see `Proved`.
     numbers: Mapping[float, Fraction]
     real: Callable[[Value], Value]
+    #: Reads what the language or its names give a meaning: names, subscripts, other calls.
     leaf: Leaf
-    functions: Mapping[str, str]
-    whole_division: bool
+    functions: Mapping[str, str]  # the name of each function in the text, and what it is
+    whole_division: bool  # whether a quotient of integers is an integer, as in C
 
     def __call__(self, node: ast.expr) -> Read:
         """Return an expression's value and shape."""

@@ -34,21 +34,14 @@ class NotShownError(Exception):
 @final
 @dataclass(frozen=True)
 class Generator:
-    """A factor of the terms of values.
+    """A factor of the terms of values."""
 
-    Attributes
-    ----------
-    kind, arg : ``name``, or a function and its argument.
-    mark : the name, bank and lane of a name; the side of a sign; the bank of a sum.
-    lanes : the lanes on which it depends.
-    parts : the generators in it, including itself.
-    """
-
+    #: kind, arg: ``name``, or a function and its argument.
     kind: str
     arg: Value | None
-    mark: Hashable
-    lanes: frozenset[Lane]
-    parts: frozenset[int]
+    mark: Hashable  # the name, bank and lane of a name; the side of a sign; the bank of a sum
+    lanes: frozenset[Lane]  # the lanes on which it depends
+    parts: frozenset[int]  # the generators in it, including itself
 
 
 @final

@@ -47,31 +47,20 @@ class Layout:
 @final
 @dataclass(frozen=True)
 class Proved:
-    """A system in normal form.
+    """A system in normal form."""
 
-    Attributes
-    ----------
-    iphs : the system.
-    field : of all values.
-    names : parameters, states and inputs, in lane 0 where they have one per lane.
-    banks : the bank of each of these that has.
-    slots : the rows of each function.
-    values : by function and row; what is not listed is zero.
-    needs : what the laws divide by, and take roots and logarithms of.
-    margins : of the conditions of the domain, and whether each is strict.
-    means : of a stage, for each name that is a co-state's mean the co-state.
-    paths : of a stage, for each stop its inner state, its bank, and whether lanes differ in drives.
-    """
-
-    iphs: IPHS
-    field: GeneratorField
+    iphs: IPHS  # the system
+    field: GeneratorField  # of all values
+    #: Parameters, states and inputs, in lane 0 where they have one per lane.
     names: Mapping[str, Value]
-    banks: Mapping[str, str]
-    slots: Mapping[str, tuple[Slot, ...]]
-    values: Mapping[Key, Value]
-    needs: tuple[Need, ...]
+    banks: Mapping[str, str]  # the bank of each of these that has
+    slots: Mapping[str, tuple[Slot, ...]]  # the rows of each function
+    values: Mapping[Key, Value]  # by function and row; what is not listed is zero
+    needs: tuple[Need, ...]  # what the laws divide by, and take roots and logarithms of
+    #: Of the conditions of the domain, and whether each is strict.
     margins: tuple[tuple[Value, bool], ...]
-    means: Mapping[str, Value]
+    means: Mapping[str, Value]  # of a stage, for each name that is a co-state's mean the co-state
+    #: Of a stage, for each stop its inner state, its bank, and whether lanes differ in drives.
     paths: tuple[tuple[str, str | None, bool], ...] = ()
 
     @cached_property

@@ -15,55 +15,37 @@ if TYPE_CHECKING:
 @final
 @dataclass(frozen=True)
 class Request:
-    """What the process is asked.
+    """What the process is asked."""
 
-    Attributes
-    ----------
-    subject : the system, or a model of it.
-    seconds : after which the process is stopped.
-    late : how often each row, by its number, has taken more than its share: once, and it comes
-        last; twice, and it is left out.
-    known : rows that it has decided before, those that are proved perhaps not attacked.
-    """
-
-    subject: IPHS | Model
-    seconds: float
+    subject: IPHS | Model  # the system, or a model of it
+    seconds: float  # after which the process is stopped
+    #: How often each row, by its number, has taken more than its share: once, and it comes last;
+    #: twice, and it is left out.
     late: Mapping[int, int] = field(default_factory=dict)
+    #: Rows that it has decided before, those that are proved perhaps not attacked.
     known: Mapping[int, Row] = field(default_factory=dict)
 
 
 @final
 @dataclass(frozen=True)
 class Progress:
-    """What is decided since the message before, and what is done next.
+    """What is decided since the message before, and what is done next."""
 
-    Attributes
-    ----------
-    rows : verdicts by their number in the report; those beyond its rows are added to it.
-    next : the number of the row that is looked at next, or None.
-    part : of the time that is left, which that row may take.
-    proved : rows that are to be attacked: nothing is said of them yet.
-    """
-
+    #: Verdicts by their number in the report; those beyond its rows are added to it.
     rows: Mapping[int, Row]
-    next: int | None = None
-    part: float = 1.0
+    next: int | None = None  # the number of the row that is looked at next, or None
+    part: float = 1.0  # of the time that is left, which that row may take
+    #: Rows that are to be attacked: nothing is said of them yet.
     proved: Mapping[int, Row] = field(default_factory=dict)
 
 
 @final
 @dataclass(frozen=True)
 class Stop:
-    """Why there are no more messages.
+    """Why there are no more messages."""
 
-    Attributes
-    ----------
-    reason : in words, with {limit} for the seconds that there were in all.
-    last : whether the system is not to be examined again.
-    """
-
-    reason: str
-    last: bool = False
+    reason: str  # in words, with {limit} for the seconds that there were in all
+    last: bool = False  # whether the system is not to be examined again
 
 
 #: The time is over; a row has taken more than its share of it; a process ended.

@@ -30,19 +30,13 @@ LINE = re.compile(r"(confirmed|not confirmed|stated) (\w+)(?: (\w+))?(?:: (.*))?
 @final
 @dataclass(frozen=True)
 class Recheck:
-    """What the checker says of a report.
+    """What the checker says of a report."""
 
-    Attributes
-    ----------
-    said : what it printed.
-    rows : (id, element) -> ``confirmed``, ``stated`` (it is not looked at), or ``not confirmed: ``
-        and the reason.
-    failed : why there are no rows, if the checker ended early.
-    """
-
-    said: str
+    said: str  # what it printed
+    #: (id, element) -> ``confirmed``, ``stated`` (it is not looked at), or ``not confirmed: `` and
+    #: the reason.
     rows: Mapping[tuple[str, str], str] = field(default_factory=dict)
-    failed: str = ""
+    failed: str = ""  # why there are no rows, if the checker ended early
 
     def faults(self, information: frozenset[tuple[str, str]] = frozenset()) -> list[str]:
         """Return a line for all that is not confirmed, except rows that are only information."""

@@ -20,17 +20,11 @@ ATTACK = "the search for numbers that contradict it"
 @final
 @dataclass(eq=False)
 class Record:
-    """What is known of the rows of a model.
+    """What is known of the rows of a model."""
 
-    Attributes
-    ----------
-    model : its name.
-    limit : seconds that it may take in all.
-    late, known : for another `Request`.
-    """
-
-    model: str
-    limit: float
+    model: str  # its name
+    limit: float  # seconds that it may take in all
+    #: late, known: for another `Request`.
     late: dict[int, int] = field(default_factory=dict)
     known: dict[int, Row] = field(default_factory=dict)
     _stated: Report | None = None

@@ -22,20 +22,13 @@ Definition = tuple[str, str]  # a name, and the line that defines it
 @final
 @dataclass(frozen=True)
 class FunctionFrame:
-    """The frame that the functions of one C file share.
-
-    Attributes
-    ----------
-    arrays : the fields of each argument that is an array.
-    words : the C name of each argument, and of the printer's own variables.
-    taken : every name in use.
-    """
+    """The frame that the functions of one C file share."""
 
     program: Program
-    arrays: Mapping[str, Sequence[Described]]
-    words: Mapping[str, str]
+    arrays: Mapping[str, Sequence[Described]]  # the fields of each argument that is an array
+    words: Mapping[str, str]  # the C name of each argument, and of the printer's own variables
     lines: Words
-    taken: Collection[str]
+    taken: Collection[str]  # every name in use
 
     def function(
         self,

@@ -32,20 +32,12 @@ LIBRARY = re.compile(rf"\b(?:{_ALONE}|pow)(?:_of)?\(")
 @final
 @dataclass(frozen=True)
 class Words:
-    """The identifiers of a text.
+    """The identifiers of a text."""
 
-    Attributes
-    ----------
-    names : the C name of each name of the program.
-    arrays : the bank of each parameter and state that is an array over lanes.
-    lane : the index of a loop over lanes.
-    number : the type of numbers: ``double``, or ``real`` in a text for every width.
-    """
-
-    names: Mapping[str, str]
-    arrays: Mapping[str, str]
-    lane: str
-    number: str = "double"
+    names: Mapping[str, str]  # the C name of each name of the program
+    arrays: Mapping[str, str]  # the bank of each parameter and state that is an array over lanes
+    lane: str  # the index of a loop over lanes
+    number: str = "double"  # the type of numbers: ``double``, or ``real`` in a text for every width
 
     def style(self, lane: str | None = None) -> Style:
         """Return the spelling of expressions in a lane, the loop's if none is given."""

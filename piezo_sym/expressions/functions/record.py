@@ -17,65 +17,48 @@ INF = math.inf
 @final
 @dataclass(frozen=True)
 class LawFunction:
-    """One function of laws.
+    """One function of laws."""
 
-    Attributes
-    ----------
-    name : in laws and SymPy, of the method of FLINT's balls, and in C unless `c` is given.
-    slopes : its derivatives by its arguments; at a kink, those of one of its sides.
-    units : ``pure``: neither argument nor value has a unit; ``equal``: arguments and value have the
-        same (of a table, all x, and all y and the value); ``none``: any argument, a value without
-        unit; ``power``: those of the power `power`.
-    choices : its branches, if it has kinks; with a `width`, for w >= 0.
-    formula : the same by functions with fewer kinks, for every w.
-    knots : whether its arguments are one number and the knots (x_k, y_k) of a piecewise linear
-        function, whose pieces `calculus` makes; the x_k have to increase.
-    jumps : whether it is discontinuous.
-    width : whether its second argument is a width, taken to be >= 0.
-    degree : f(c*x, c*w) = c**degree * f(x, w) for all c > 0, if there is such a number.
-    power : the exponent, if it is a power of its argument.
-    parity : f(-x, w) = -f(x, w) is ``odd``, f(-x, w) = f(x, w) ``even``.
-    rises : 1 if a smooth function increases strictly (an even one: for x >= 0), else 0.
-    domain : where it has a value; "" is everywhere.  A smooth function of two needs w > 0, too.
-    sign : y > 0, or y >= 0 and zero at zero alone, wherever it has a value.
-    known : a rational argument with a rational value, and that value.
-    bounds : rational bounds of its values.
-    largest : the argument beyond which the value exceeds every double.
-    integral : an antiderivative by x, where it is of use.
-    facts : known to solvers besides monotony; a comment at each says why it holds.
-    numpy, c : its names there; `numpy` may be a template with places x and w, whose outermost
-        operator is `binds`.
-    numpy_helper : the import and the definition that `numpy` needs.
-    c_helper : parameters and value in C, if <math.h> lacks it.
-    written : whether a spec may write it; the others are made by lowering.
-    about, example : one line on it, and a law with it, for users.
-    """
-
-    name: str
+    name: str  # in laws and SymPy, of the method of FLINT's balls, and in C unless `c` is given
+    #: Its derivatives by its arguments; at a kink, those of one of its sides.
     slopes: tuple[str, ...]
+    #: ``pure``: neither argument nor value has a unit; ``equal``: arguments and value have the same
+    #: (of a table, all x, and all y and the value); ``none``: any argument, a value without unit;
+    #: ``power``: those of the power `power`.
     units: Literal["pure", "equal", "none", "power"] = "pure"
-    choices: str = ""
-    formula: str = ""
+    choices: str = ""  # its branches, if it has kinks; with a `width`, for w >= 0
+    formula: str = ""  # the same by functions with fewer kinks, for every w
+    #: Whether its arguments are one number and the knots (x_k, y_k) of a piecewise linear function,
+    #: whose pieces `calculus` makes; the x_k have to increase.
     knots: bool = False
-    jumps: bool = False
-    width: bool = False
+    jumps: bool = False  # whether it is discontinuous
+    width: bool = False  # whether its second argument is a width, taken to be >= 0
+    #: F(c*x, c*w) = c**degree * f(x, w) for all c > 0, if there is such a number.
     degree: int | None = None
-    power: Fraction | None = None
+    power: Fraction | None = None  # the exponent, if it is a power of its argument
+    #: F(-x, w) = -f(x, w) is ``odd``, f(-x, w) = f(x, w) ``even``.
     parity: Literal["", "odd", "even"] = ""
-    rises: int = 0
+    rises: int = 0  # 1 if a smooth function increases strictly (an even one: for x >= 0), else 0
+    #: Where it has a value; "" is everywhere.  A smooth function of two needs w > 0, too.
     domain: Literal["", "x > 0", "x >= 0"] = ""
+    #: Y > 0, or y >= 0 and zero at zero alone, wherever it has a value.
     sign: Literal["", ">", ">="] = ""
+    #: A rational argument with a rational value, and that value.
     known: tuple[int, int] | None = None
-    bounds: tuple[float | Fraction, float | Fraction] = (-INF, INF)
-    largest: float = INF
-    integral: str = ""
+    bounds: tuple[float | Fraction, float | Fraction] = (-INF, INF)  # rational bounds of its values
+    largest: float = INF  # the argument beyond which the value exceeds every double
+    integral: str = ""  # an antiderivative by x, where it is of use
+    #: Known to solvers besides monotony; a comment at each says why it holds.
     facts: tuple[str, ...] = ()
+    #: Its name there, or a template with places x and w, whose outermost operator is `binds`.
     numpy: str = ""
     binds: Literal["atom", "sum"] = "atom"
+    #: The import and the definition that `numpy` needs.
     numpy_helper: tuple[()] | tuple[str, str] = ()
-    c: str = ""
-    c_helper: tuple[str, str] | None = None
-    written: bool = True
+    c: str = ""  # its name there, if that differs
+    c_helper: tuple[str, str] | None = None  # parameters and value in C, if <math.h> lacks it
+    written: bool = True  # whether a spec may write it; the others are made by lowering
+    #: about, example: one line on it, and a law with it, for users.
     about: str = ""
     example: str = ""
 

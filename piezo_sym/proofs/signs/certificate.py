@@ -25,17 +25,13 @@ LETTER = "s"
 @final
 @dataclass(frozen=True, slots=True)
 class Windows:
-    """Windows of t on which a function of x = centre + side*t is shown to be >= 0.
+    """Windows of t on which a function of x = centre + side*t is shown to be >= 0."""
 
-    Attributes
-    ----------
-    centre, side : a rational number, and 1 or -1.
-    windows : (lo, hi, order) for lo < t <= hi, hi possibly infinite, with the number of derivatives
-        used.  The centre t = 0 is in no window; the function is evaluated there separately.
-    """
-
+    #: centre, side: a rational number, and 1 or -1.
     centre: Fraction
     side: int
+    #: (lo, hi, order) for lo < t <= hi, hi possibly infinite, with the number of derivatives used.
+    #: The centre t = 0 is in no window; the function is evaluated there separately.
     windows: tuple[tuple[float, float, int], ...]
 
     def as_data(self) -> dict[str, object]:
@@ -51,27 +47,20 @@ def _number(end: float) -> str:
 @final
 @dataclass(frozen=True, slots=True)
 class Term:
-    """One summand: ``law = prefactor*f(s)`` wherever the law is defined, ``letter = scale*s``.
+    """One summand: ``law = prefactor*f(s)`` wherever the law is defined, ``letter = scale*s``."""
 
-    Attributes
-    ----------
-    law : in the letter.
-    letter : its name.
-    prefactor : may contain the letter; ``sign*prefactor >= 0`` follows from domain and guards for
-        every value of the letter, wherever the prefactor is defined.
-    sign : 1 or -1.
-    scale : (base, power); each base is free of the letter and > 0 by domain and guards.
-    f : a tree in the letter, which stands for s: f is defined and ``sign*f(s)*s >= 0`` for all real
-        s.  None: the prefactor is law*letter itself.
-    rays : the windows of that proof; every real s is a centre or lies in a window.
-    """
-
-    law: Expr
-    letter: str
+    law: Expr  # in the letter
+    letter: str  # its name
+    #: May contain the letter; ``sign*prefactor >= 0`` follows from domain and guards for every
+    #: value of the letter, wherever the prefactor is defined.
     prefactor: Expr
-    sign: int = 1
+    sign: int = 1  # 1 or -1
+    #: (base, power); each base is free of the letter and > 0 by domain and guards.
     scale: tuple[tuple[Expr, Fraction], ...] = ()
+    #: A tree in the letter, which stands for s: f is defined and ``sign*f(s)*s >= 0`` for all real
+    #: s.  None: the prefactor is law*letter itself.
     f: Expr | None = None
+    #: The windows of that proof; every real s is a centre or lies in a window.
     rays: tuple[Windows, ...] = ()
 
     def where(self, condition: Cmp) -> Term:

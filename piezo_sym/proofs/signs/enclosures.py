@@ -35,19 +35,14 @@ class Window:
 @final
 @dataclass(frozen=True, slots=True)
 class Enclosure:
-    """A function on a window.
+    """A function on a window."""
 
-    Attributes
-    ----------
-    inner : its jet on the window.
-    left, right : jets of its one-sided limits at lo and hi, as long as they are known.
-    growth : the logarithmic derivative f'/f on the window (almost everywhere, if f is only
-        Lipschitz); None if not known.
-    """
-
-    inner: Jet
+    inner: Jet  # its jet on the window
+    #: left, right: jets of its one-sided limits at lo and hi, as long as they are known.
     left: Jet = ()
     right: Jet = ()
+    #: The logarithmic derivative f'/f on the window (almost everywhere, if f is only Lipschitz);
+    #: None if not known.
     growth: Interval | None = None
 
 

@@ -24,19 +24,13 @@ EXACT_BITS = 256
 @final
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """All values of a quantity lie in [lo, hi]; values are real numbers, never infinite.
+    """All values of a quantity lie in [lo, hi]; values are real numbers, never infinite."""
 
-    Attributes
-    ----------
-    lo, hi : the ends, which may be infinite.
-    nonzero : the quantity is never zero (though the interval may reach zero).
-    exact : the quantity is this one number.
-    """
-
+    #: lo, hi: the ends, which may be infinite.
     lo: float
     hi: float
-    nonzero: bool = False
-    exact: Fraction | None = None
+    nonzero: bool = False  # the quantity is never zero (though the interval may reach zero)
+    exact: Fraction | None = None  # the quantity is this one number
 
     def __post_init__(self) -> None:
         """Raise on an empty interval or NaN, which no sound computation gives."""

@@ -43,20 +43,12 @@ Powers = Mapping[Expr, Fraction]
 @final
 @dataclass(frozen=True, slots=True)
 class Reduction:
-    """``law = product of prefactors * f(s)``, with ``letter = scale*s``.
+    """``law = product of prefactors * f(s)``, with ``letter = scale*s``."""
 
-    Attributes
-    ----------
-    prefactors : the other factors, of any sign.
-    f : a tree whose only name is `name`.
-    name : the letter, which stands for s in `f`.
-    units : (positive base, power); their product is the scale.
-    """
-
-    prefactors: tuple[Expr, ...]
-    f: Expr
-    name: str
-    units: tuple[tuple[Expr, Fraction], ...]
+    prefactors: tuple[Expr, ...]  # the other factors, of any sign
+    f: Expr  # a tree whose only name is `name`
+    name: str  # the letter, which stands for s in `f`
+    units: tuple[tuple[Expr, Fraction], ...]  # (positive base, power); their product is the scale
 
     @property
     def scale(self) -> Expr:

@@ -27,26 +27,20 @@ ALIGNED = 64
 @final
 @dataclass(frozen=True)
 class Stepping:
-    """The options of steps.
+    """The options of steps."""
 
-    Attributes
-    ----------
-    stages : of a step, 1 to 5; its order is twice that.
-    tolerance : of the estimate of a step's error, in scales of the states; not used with `fixed`.
-    fixed : the longest step [s], for equal steps between samples and breaks that go over kinks; 0
-        for steps chosen by their errors.
-    first, longest : the length of the first step, and of the longest [s].
-    kinks : "end" steps at kinks; or "either": go over many of them where that is faster.
-    lossy : whether steps are dissipative, of one stage; a failed one is not halved.
-    """
-
-    stages: int
+    stages: int  # of a step, 1 to 5; its order is twice that
+    #: Of the estimate of a step's error, in scales of the states; not used with `fixed`.
     tolerance: float
+    #: first, longest: the length of the first step, and of the longest [s].
     first: float
     longest: float
+    #: The longest step [s], for equal steps between samples and breaks that go over kinks; 0 for
+    #: steps chosen by their errors.
     fixed: float = 0.0
+    #: "end" steps at kinks; or "either": go over many of them where that is faster.
     kinks: Literal["end", "either"] = "either"
-    lossy: bool = False
+    lossy: bool = False  # whether steps are dissipative, of one stage; a failed one is not halved
 
 
 @lru_cache(maxsize=64)

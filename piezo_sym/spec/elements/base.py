@@ -69,54 +69,39 @@ class State:
 @final
 @dataclass(frozen=True, eq=False)
 class Form:
-    """What kinds are made of: a store, a dissipation, a coupling, a source, a body; see `forms`.
+    """What kinds are made of: a store, a dissipation, a coupling, a source, a body; see `forms`."""
 
-    Attributes
-    ----------
-    fields : the fields of a spec, nodes first.
-    doc : its law, state and signs, in words.
-    ports : (element, its name, its branch) -> the ports.
-    role : the key by which `kind_of` finds it.
-    one_of : fields of which exactly one has to be given, such as a law and its inverse.
-    letter, unit : of its state; empty if it has none.
-    fault : element -> a fault of its fields taken together, if there is one.
-    requires : (element, its name) -> the conditions that it adds to the domain.
-    starts : (element, its name) -> the conditions on its initial states.
-    has_lanes : whether an element may be a bank, by `count`.
-    joins : element -> whether `count` of them are joined into one state instead.
-    ratios : the pairs of domains that a coupling may couple, with the unit of its ratio.
-    """
-
-    fields: Fields
-    doc: str
+    fields: Fields  # the fields of a spec, nodes first
+    doc: str  # its law, state and signs, in words
+    #: (element, its name, its branch) -> the ports.
     ports: Callable[[Any, str, Branch], tuple[Port, ...]]
-    role: tuple[Any, ...] = ()
+    role: tuple[Any, ...] = ()  # the key by which `kind_of` finds it
+    #: Fields of which exactly one has to be given, such as a law and its inverse.
     one_of: tuple[str, ...] = ()
+    #: letter, unit: of its state; empty if it has none.
     letter: str = ""
     unit: Callable[[Any], str] = lambda _: ""
+    #: Element -> a fault of its fields taken together, if there is one.
     fault: Callable[[Any], Fault | None] = lambda _: None
+    #: (element, its name) -> the conditions that it adds to the domain.
     requires: Callable[[Any, str], tuple[Cmp, ...]] = lambda *_: ()
+    #: (element, its name) -> the conditions on its initial states.
     starts: Callable[[Any, str], tuple[Cmp, ...]] = lambda *_: ()
-    has_lanes: bool = False
+    has_lanes: bool = False  # whether an element may be a bank, by `count`
+    #: Element -> whether `count` of them are joined into one state instead.
     joins: Callable[[Any], bool] = lambda _: False
+    #: The pairs of domains that a coupling may couple, with the unit of its ratio.
     ratios: tuple[tuple[PhysicalDomain, PhysicalDomain, str], ...] = ()
 
 
 @final
 @dataclass(frozen=True)
 class Kind:
-    """A row of the table of kinds.
+    """A row of the table of kinds."""
 
-    Attributes
-    ----------
-    name : as `kind` gives it in a spec.
-    about : what it is, on one line.
-    form : its fields and its ports.
-    """
-
-    name: str
-    about: str
-    form: Form
+    name: str  # as `kind` gives it in a spec
+    about: str  # what it is, on one line
+    form: Form  # its fields and its ports
 
     @property
     def fields(self) -> Fields:

@@ -26,22 +26,15 @@ class PowerVariable(Enum):
 @final
 @dataclass(frozen=True)
 class PhysicalVariable:
-    """The across or through variable of a domain.
+    """The across or through variable of a domain."""
 
-    Attributes
-    ----------
-    name : also that of the field for a dissipative law which gives it.
-    unit, letter : its unit, and its letter in laws.
-    prefix : with which names of such quantities begin, ``F`` in ``F_spring``.
-    sense : its sign convention along a branch, in words.
-    state, state_unit, state_letter : the state of a store whose co-state it is.
-    """
-
-    name: str
+    name: str  # also that of the field for a dissipative law which gives it
+    #: unit, letter: its unit, and its letter in laws.
     unit: str
     letter: str
-    prefix: str
-    sense: str
+    prefix: str  # with which names of such quantities begin, ``F`` in ``F_spring``
+    sense: str  # its sign convention along a branch, in words
+    #: state, state_unit, state_letter: the state of a store whose co-state it is.
     state: str
     state_unit: str
     state_letter: str
@@ -55,22 +48,15 @@ class PhysicalVariable:
 @final
 @dataclass(frozen=True)
 class PhysicalDomain:
-    """A physical domain.
+    """A physical domain."""
 
-    Attributes
-    ----------
-    name : in messages, and of the fields for a coupling's pairs of nodes.
-    reference : the node at which the across variable is zero.
-    node : another node, for examples.
-    across, through : its two variables.
-    effort : which of them bond graphs call the effort; the other is the flow.
-    """
-
-    name: str
-    reference: str
-    node: str
+    name: str  # in messages, and of the fields for a coupling's pairs of nodes
+    reference: str  # the node at which the across variable is zero
+    node: str  # another node, for examples
+    #: across, through: its two variables.
     across: PhysicalVariable
     through: PhysicalVariable
+    #: Which of them bond graphs call the effort; the other is the flow.
     effort: PowerVariable = PowerVariable.ACROSS
 
     @property

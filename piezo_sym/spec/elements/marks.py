@@ -29,22 +29,15 @@ Fields = dict[str, tuple[Any, Any, Any]]
 @final
 @dataclass(frozen=True)
 class Letters:
-    """Marks a field as a law: its unit, and the letters it may use besides parameters.
+    """Marks a field as a law: its unit, and the letters it may use besides parameters."""
 
-    Attributes
-    ----------
-    units : the unit of each letter, such as ``{"i": "A", "T": "K"}``.
-    unit : the unit of the law itself.
-    instead : pairs (field, unit): the unit of the law if that field is given.
-    sees : whether it may use states and temperatures of other elements, by their names.
-    own : whether its letters are the states that the element lists.
-    """
-
-    units: Mapping[str, str]
-    unit: str
+    units: Mapping[str, str]  # the unit of each letter, such as ``{"i": "A", "T": "K"}``
+    unit: str  # the unit of the law itself
+    #: Pairs (field, unit): the unit of the law if that field is given.
     instead: tuple[tuple[str, str], ...] = ()
+    #: Whether it may use states and temperatures of other elements, by their names.
     sees: bool = False
-    own: bool = False
+    own: bool = False  # whether its letters are the states that the element lists
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -16,63 +16,43 @@ Branch = tuple[str, str]
 @final
 @dataclass(frozen=True)
 class Storage:
-    """An energy store: its state x, and its co-state dU/dx imposed on a branch.
+    """An energy store: its state x, and its co-state dU/dx imposed on a branch."""
 
-    Attributes
-    ----------
-    state : symbol of the state.
-    law : the co-state dU/dx as a function of states and parameters.
-    costate : name of the co-state, such as ``v_mass``.
-    imposes : which variable the co-state is; the state's rate is the other one.
-    units : of the state and of the co-state.
-    doc : one line on the state.
-    energy : U as a function of states, the same for all stores that share it; None for the integral
-        of `law` over the state.
-    """
-
-    state: str
-    law: Expr
-    costate: str
+    state: str  # symbol of the state
+    law: Expr  # the co-state dU/dx as a function of states and parameters
+    costate: str  # name of the co-state, such as ``v_mass``
     branch: Branch
     domain: PhysicalDomain
-    imposes: PowerVariable
-    units: tuple[str, str]
-    doc: str
+    imposes: PowerVariable  # which variable the co-state is; the state's rate is the other one
+    units: tuple[str, str]  # of the state and of the co-state
+    doc: str  # one line on the state
+    #: U as a function of states, the same for all stores that share it; None for the integral of
+    #: `law` over the state.
     energy: Expr | None = None
 
 
 @final
 @dataclass(frozen=True)
 class DissipativePort:
-    """An irreversible process: output W = law(z, T), power W*z turned into heat of a body.
+    """An irreversible process: output W = law(z, T), power W*z turned into heat of a body."""
 
-    Attributes
-    ----------
-    letter : the letter of the conjugate variable z in `law`; T is the heated body's temperature.
-    field : the name of the law in the spec, for messages.
-    output : name of W, such as ``V_hysteron``.
-    effort : name of z, used where z is not just a co-state.
-    imposes : which variable W is; z is the other one.
-    heats : the element whose body takes the heat.
-    written : the law of the spec, in its own letter, if `law` is its inverse.
-    rate_letter, rate, state : for a slip, the letter of the driving rate in `law`, the name of that
-        rate, and the state x of the store that slips: x' = rate - W.
-    limit : for a stop, the largest effort; `rhs` evaluates `law`, steps follow the exact path.
-    """
-
+    #: The letter of the conjugate variable z in `law`; T is the heated body's temperature.
     letter: str
     law: Expr
-    field: str
-    output: str
-    effort: str
+    field: str  # the name of the law in the spec, for messages
+    output: str  # name of W, such as ``V_hysteron``
+    effort: str  # name of z, used where z is not just a co-state
     branch: Branch
     domain: PhysicalDomain
-    imposes: PowerVariable
-    heats: str
-    written: Expr | None = None
+    imposes: PowerVariable  # which variable W is; z is the other one
+    heats: str  # the element whose body takes the heat
+    written: Expr | None = None  # the law of the spec, in its own letter, if `law` is its inverse
+    #: rate_letter, rate, state: for a slip, the letter of the driving rate in `law`, the name of
+    #: that rate, and the state x of the store that slips: x' = rate - W.
     rate_letter: str = ""
     rate: str = ""
     state: str = ""
+    #: For a stop, the largest effort; `rhs` evaluates `law`, steps follow the exact path.
     limit: Expr | None = None
 
 
@@ -165,18 +145,13 @@ class HeatInput:
 @final
 @dataclass(frozen=True)
 class Conductor:
-    """Heat conduction between two bodies: entropy conductance*(T_1 - T_2)/T_1 leaves the first.
+    """Heat conduction between two bodies: entropy conductance*(T_1 - T_2)/T_1 leaves the first."""
 
-    Attributes
-    ----------
-    first, second : elements of the two bodies.
-    output : name of the entropy flow out of the first body.
-    """
-
+    #: first, second: elements of the two bodies.
     first: str
     second: str
     conductance: Expr
-    output: str
+    output: str  # name of the entropy flow out of the first body
 
 
 Port = Storage | DissipativePort | Coupling | Source | Body | Exchange | HeatInput | Conductor

@@ -24,23 +24,16 @@ from piezo_sym.spec.elements.ports import Branch, DissipativePort, Port, Storage
 @final
 @dataclass(frozen=True)
 class Size:
-    """The parameter of an energy store in a domain: its stiffness, capacitance, mass ...
-
-    Attributes
-    ----------
-    imposes : which variable the store's co-state is.
-    field, unit : the field that gives it, and its unit.
-    symbol : the parameter for it in the example.
-    stiff : whether the co-state is size*(state - rest), not state/size.
-    slips : whether the store may have a slip, in series with a spring, in parallel to a capacitor.
-    """
+    """The parameter of an energy store in a domain: its stiffness, capacitance, mass ..."""
 
     domain: PhysicalDomain
-    imposes: PowerVariable
+    imposes: PowerVariable  # which variable the store's co-state is
+    #: field, unit: the field that gives it, and its unit.
     field: str
     unit: str
-    symbol: str
-    stiff: bool = False
+    symbol: str  # the parameter for it in the example
+    stiff: bool = False  # whether the co-state is size*(state - rest), not state/size
+    #: Whether the store may have a slip, in series with a spring, in parallel to a capacitor.
     slips: bool = False
 
     @property
