@@ -50,12 +50,8 @@ class Worker:
     ) -> Iterator[bytes]:
         """Yield the lines of an answer; a process that does not give all of them is stopped.
 
-        Raises
-        ------
-        TimeoutError
-            If the answer takes longer than `seconds`.
-        EOFError, OSError
-            If the process ends, or cannot be started.
+        Raises `TimeoutError` if the answer takes longer than `seconds`. Raises `EOFError` or
+        `OSError` if the process ends, or cannot be started.
         """
         late = threading.Event()
         with self._lock:

@@ -96,10 +96,8 @@ class SymbolTable(Mapping[str, sp.Symbol]):
     def law(self, tree: Expr, letters: Mapping[str, sp.Expr]) -> sp.Expr:
         """Return a law as a SymPy expression, its letters replaced by the given expressions.
 
-        Raises
-        ------
-        SpecError
-            If a side of a comparison is not real, such as ``log(sign(v)) < 1`` for v < 0.
+        Raises `SpecError` if a side of a comparison is not real, such as ``log(sign(v)) < 1`` for v
+        < 0.
         """
         table = {n: (letters if n in letters else self)[n] for n in names(tree)}
         try:

@@ -62,10 +62,8 @@ def value_of(node: Expr, values: Mapping[str, Value]) -> Value:
 def evaluate(node: Expr, values: Mapping[str, float]) -> float:
     """Return the value of a law in floating point.
 
-    Raises
-    ------
-    ArithmeticError, ValueError
-        Where the law has no finite real value (1/0, log(0), an overflow).
+    Raises `ArithmeticError` or `ValueError` where the law has no finite real value (1/0, log(0), an
+    overflow).
     """
     value = float(value_of(node, values))
     if not math.isfinite(value):
@@ -76,17 +74,13 @@ def evaluate(node: Expr, values: Mapping[str, float]) -> float:
 def evaluated(node: Expr, values: Mapping[Any, Value], bits: int = BITS) -> Value:
     """Return the value of a law as a number of FLINT's.
 
+    Raises `ArithmeticError` or `ValueError` where the law has no value (1/0, log(0)). Raises
+    `TooCloseError` if the precision does not decide that, or a comparison.
+
     Parameters
     ----------
     values : of names, and of sums over lanes.
     bits : precision of balls.
-
-    Raises
-    ------
-    ArithmeticError, ValueError
-        Where the law has no value (1/0, log(0)).
-    TooCloseError
-        If the precision does not decide that, or a comparison.
     """
     with ctx.workprec(bits):
         value = _value(node, values)
@@ -98,12 +92,8 @@ def evaluated(node: Expr, values: Mapping[Any, Value], bits: int = BITS) -> Valu
 def holds(condition: Cmp, values: Mapping[Any, Value], bits: int = BITS) -> bool:
     """Return whether a comparison holds.
 
-    Raises
-    ------
-    TooCloseError
-        If it cannot be decided.
-    ArithmeticError, ValueError
-        If a side has no value.
+    Raises `TooCloseError` if it cannot be decided.  Raises `ArithmeticError` or `ValueError` if a
+    side has no value.
     """
     with ctx.workprec(bits):
         return _holds(condition, values)

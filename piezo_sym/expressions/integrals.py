@@ -42,13 +42,8 @@ class NoFormError(Exception):
 def by_rules(node: Expr, name: str) -> Expr:
     """Return an antiderivative of `node` by `name`.
 
-    Known forms: polynomials, also as x/(a/(1 + x**2)), and sums of c*(a*x + b)**n and
-    c*f(a*x + b), c, a, b free of x.
-
-    Raises
-    ------
-    NoFormError
-        If the law has none of these forms.
+    Known forms: polynomials, also as x/(a/(1 + x**2)), and sums of c*(a*x + b)**n and c*f(a*x + b),
+    c, a, b free of x.  Raises `NoFormError` if the law has none of these forms.
     """
     if name not in names(node):
         return mul(node, Sym(name))
@@ -84,10 +79,7 @@ def by_rules(node: Expr, name: str) -> Expr:
 def _degree(node: Expr, name: str) -> tuple[Fraction, tuple[Expr, ...]]:
     """Return n of a product c*x**n, x > 0: a number, and the terms that exponents w > 0 add to it.
 
-    Raises
-    ------
-    NoFormError
-        If it is no such product.
+    Raises `NoFormError` if it is no such product.
     """
     if name not in names(node):
         return Fraction(0), ()

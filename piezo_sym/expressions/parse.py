@@ -21,15 +21,13 @@ Tree = TypeVar("Tree", Expr, Cmp)
 def parse_law(text: str, where: str) -> Expr:
     """Return the tree of a law.
 
+    Raises `SpecError` if the text is not of the law language, or a constant part of it has no
+    value.
+
     Parameters
     ----------
     text : the law, as written in the spec.
     where : its place in the spec, for the message.
-
-    Raises
-    ------
-    SpecError
-        If the text is not of the law language, or a constant part of it has no value.
     """
     return _located(_law, text, where)
 
@@ -37,10 +35,7 @@ def parse_law(text: str, where: str) -> Expr:
 def parse_condition(text: str, where: str) -> Cmp:
     """Return the tree of one comparison, such as ``T > T_0``.
 
-    Raises
-    ------
-    SpecError
-        If the text is not one comparison of two laws.
+    Raises `SpecError` if the text is not one comparison of two laws.
     """
     return _located(_condition, text, where)
 

@@ -12,10 +12,7 @@ from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, 
 def reflected(law: Expr, letter: str) -> Expr:
     """Return a law with the sign of its letter changed.
 
-    Raises
-    ------
-    ZeroDivisionError
-        If a divisor simplifies to zero.
+    Raises `ZeroDivisionError` if a divisor simplifies to zero.
     """
 
     def turned(node: Expr) -> Expr:

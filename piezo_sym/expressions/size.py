@@ -41,10 +41,7 @@ MAX_TERMS = 512
 def check_size(tree: Expr) -> None:
     """Refuse a law that would become too large in a later stage.
 
-    Raises
-    ------
-    RefusedError
-        With the limit that the law exceeds.
+    Raises `RefusedError` with the limit that the law exceeds.
     """
     if _degree(tree) > MAX_DEGREE:
         raise RefusedError("has too high a degree", f"at most {MAX_DEGREE} in all")

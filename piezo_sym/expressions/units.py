@@ -88,10 +88,8 @@ def raised(name: str, power: Fraction | int) -> str:
 def parse_unit(text: str, where: str = "unit", value: float | None = None) -> Unit:
     """Return the unit that `text` names; `value` is a value in it, for the message.
 
-    Raises
-    ------
-    SpecError
-        If the text is not of the grammar, names no unit, or a unit with an offset (degC).
+    Raises `SpecError` if the text is not of the grammar, names no unit, or a unit with an offset
+    (degC).
     """
     try:
         return _known(text)

@@ -127,10 +127,7 @@ class Hunt:
     def attack(self, row: tuple[str, str]) -> Attack | None:
         """Return the result for a row, after the search; None if it has no value at a point.
 
-        Raises
-        ------
-        ContradictionError
-            If it is false.
+        Raises `ContradictionError` if it is false.
         """
         track = self._tracks.get(row)
         return track and self._judged(track, self._exact)

@@ -102,10 +102,7 @@ class Energy:
 def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
     """Return the energies, ordered by the first state of each.
 
-    Raises
-    ------
-    SpecError
-        If a co-state law has no integral in closed form.
+    Raises `SpecError` if a co-state law has no integral in closed form.
     """
     above = (greater(condition.tree) for condition in conditions(circuit.model))
     positive = frozenset(
@@ -166,12 +163,8 @@ def check_stops(
 ) -> None:
     """Refuse a stop whose rate depends on the effort of a stop: that would be an implicit equation.
 
-    Laws depend on co-states, inputs and states alone, so inserting them once is enough.
-
-    Raises
-    ------
-    NetworkError
-        Says what to put beside it.
+    Laws depend on co-states, inputs and states alone, so inserting them once is enough.  Raises
+    `NetworkError`, which says what to put beside it.
     """
     stores = {port.state: port for _, port in circuit.of(Storage)}
     stops = [(e, p) for e, p in circuit.of(DissipativePort) if p.limit is not None]

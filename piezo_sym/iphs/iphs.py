@@ -257,12 +257,8 @@ class IPHS:
 def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
     """Return the IPHS of a solved network: its junction, and the laws of its elements.
 
-    Raises
-    ------
-    SpecError
-        If a storage law has no energy in closed form.
-    NetworkError
-        If a stop's rate depends on the effort of a stop.
+    Raises `SpecError` if a storage law has no energy in closed form.  Raises `NetworkError` if a
+    stop's rate depends on the effort of a stop.
     """
     circuit = junction.circuit
     system = system_of(circuit, symbols, junction)

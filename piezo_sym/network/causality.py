@@ -27,12 +27,8 @@ def causal_laws(circuit: Circuit, symbols: SymbolTable) -> Laws:
     """Return the junction laws of a circuit, in a causality in which they have a solution.
 
     Each turn of a linear law resolves one contradiction between imposed variables.  A law is turned
-    once at most, so the loop ends.
-
-    Raises
-    ------
-    NetworkError
-        If no turn of a linear law resolves a contradiction; names the elements in it.
+    once at most, so the loop ends.  Raises `NetworkError` if no turn of a linear law resolves a
+    contradiction; names the elements in it.
     """
     turned, followers = set[str](), frozenset[str]()
     while True:
@@ -75,12 +71,8 @@ def dependent_states(laws: Laws, singular: SingularError) -> set[str]:
     """Return the states of the stores that follow others, as their co-states depend on them.
 
     In the order of the spec, a store follows if its co-state is a combination of earlier ones; it
-    then imposes its rate.
-
-    Raises
-    ------
-    NetworkError
-        If the laws do not fix the network otherwise, or a store cannot be joined.
+    then imposes its rate.  Raises `NetworkError` if the laws do not fix the network otherwise, or a
+    store cannot be joined.
     """
     if not singular.relations:
         raise refusal(laws, singular)

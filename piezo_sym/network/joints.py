@@ -80,12 +80,8 @@ class Joint:
 def join_stores(laws: Laws) -> tuple[Circuit, tuple[Joint, ...]]:
     """Return the circuit without followers, and the joints that they are in.
 
-    Raises
-    ------
-    SpecError
-        If initial values disagree, or a law or condition depends on the state of a follower.
-    NetworkError
-        If too many states are joined with each other.
+    Raises `SpecError` if initial values disagree, or a law or condition depends on the state of a
+    follower.  Raises `NetworkError` if too many states are joined with each other.
     """
     Z = [
         {number: laws.expression(share) for (_, number), share in laws.answers["R", m][0].items()}

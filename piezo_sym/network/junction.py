@@ -60,10 +60,8 @@ class Junction:
 def junction_of(circuit: Circuit, symbols: SymbolTable) -> Junction:
     """Return the solved junction structure of a circuit.
 
-    Raises
-    ------
-    NetworkError
-        If the junction laws have no, or more than one, solution; names the elements at fault.
+    Raises `NetworkError` if the junction laws have no, or more than one, solution; names the
+    elements at fault.
     """
     check_nodes(circuit)
     laws = causal_laws(circuit, symbols)

@@ -127,14 +127,8 @@ class Laws:
         """The answer of each branch, by the given that it imposes, and two of each coupling n.
 
         These are ("C", 2*n), its across_1 (of a transformer: through_1), and ("C", 2*n + 1), its
-        across_2.
-
-        Raises
-        ------
-        SingularError
-            If the laws have no, or more than one, solution; `refusals` names the elements.
-        NetworkError
-            If a bank fixes a node that it shares.
+        across_2. Raises `SingularError` if the laws have no, or more than one, solution; `refusals`
+        names the elements.  Raises `NetworkError` if a bank fixes a node that it shares.
         """
         lanes = {bank: self._solve_lane(bank) for bank in self.banks}
         shared = self._solve_shared(lanes)

@@ -71,10 +71,8 @@ class Loops:
 def loops_of(laws: Laws, M: LaneMatrix) -> Loops:
     """Return the solved loops of a network in which z = K^T c + M W.
 
-    Raises
-    ------
-    NetworkError
-        If a law in a loop is not linear, or a loop has too many resistors; names them.
+    Raises `NetworkError` if a law in a loop is not linear, or a loop has too many resistors; names
+    them.
     """
     groups = tuple(_groups(M))
     taken = set(laws.circuit.names)

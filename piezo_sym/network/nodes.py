@@ -66,10 +66,7 @@ def inner_nodes(circuit: Circuit) -> frozenset[str]:
 def check_nodes(circuit: Circuit) -> None:
     """Check that every node is of one domain, shared by two branches, and tied to its reference.
 
-    Raises
-    ------
-    NetworkError
-        Naming the node and the elements there.
+    Raises `NetworkError`, which names the node and the elements there.
     """
     domains: dict[str, tuple[PhysicalDomain, str]] = {}
     users: dict[str, list[str]] = {}

@@ -61,10 +61,7 @@ class TooManyBranchesError(Exception):
 def branches(law: Expr, known: Iterable[Cmp] = ()) -> tuple[Branch, ...]:
     """Return the branches of a law where the `known` comparisons of a domain hold.
 
-    Raises
-    ------
-    TooManyBranchesError
-        If there are more than `MOST`.
+    Raises `TooManyBranchesError` if there are more than `MOST`.
     """
     found: list[Branch] = []
     for branch in _pieces(settled(law, known), ()):

@@ -81,10 +81,7 @@ def _statement(*laws: Law) -> str:
 def jump_questions(law: Law, assumptions: Assumptions) -> Iterator[Question]:
     """Yield a question on each pair of branches that may meet, and whether they cover all points.
 
-    Raises
-    ------
-    TooManyBranchesError
-        If the law has too many branches.
+    Raises `TooManyBranchesError` if the law has too many branches.
     """
     if not (_edges(law, assumptions) and _has_choices(law.tree)):
         return

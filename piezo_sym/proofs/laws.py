@@ -124,12 +124,8 @@ def value_questions(law: Expr | Cmp, assumptions: Assumptions) -> tuple[Question
     """Return the questions whether a law, or both sides of a comparison, have a value everywhere.
 
     Each part must have one where it is evaluated: under the conditions around it.  The knots of a
-    table must increase in all of the domain.
-
-    Raises
-    ------
-    TooManyBranchesError
-        If the law has too many branches.
+    table must increase in all of the domain.  Raises `TooManyBranchesError` if the law has too many
+    branches.
     """
     tree = Call("together", (law.left, law.right)) if isinstance(law, Cmp) else law
     pieces = branches(tree, assumptions.where)

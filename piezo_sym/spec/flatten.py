@@ -58,14 +58,12 @@ class Flat:
 def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
     """Return the tables of a spec, those of its components and banks added.
 
+    Raises `SpecError` if a component names what its model or this spec does not have, or names
+    clash.
+
     Parameters
     ----------
     models : the flat models of the components, in order.
-
-    Raises
-    ------
-    SpecError
-        If a component names what its model or this spec does not have, or names clash.
     """
     pairs = zip(spec.components.items(), models, strict=True)
     parts = [Part(name, component, model) for (name, component), model in pairs]
@@ -176,14 +174,12 @@ def inputs_of(elements: Iterable[Element]) -> set[str]:
 def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any], str]]:
     """Yield the name, the fields and the place of each element of a cell.
 
+    Raises `SpecError` if a bank has no elements, or one that cannot be in a cell, or a node has two
+    meanings.
+
     Parameters
     ----------
     outside : the nodes of the elements that are in no cell.
-
-    Raises
-    ------
-    SpecError
-        If a bank has no elements, or one that cannot be in a cell, or a node has two meanings.
     """
     for bank, table in spec.banks.items():
         where = f"banks.{bank}"

@@ -48,10 +48,8 @@ def parse(text: str, source: str = "spec") -> Model:
 def starter(name: str, where: str = "name") -> str:
     """Return the text of a first spec called `name`.
 
-    Raises
-    ------
-    SpecError
-        If `name` cannot name a model, or names a shipped one, whose module it would hide.
+    Raises `SpecError` if `name` cannot name a model, or names a shipped one, whose module it would
+    hide.
     """
     check_model_name(name, where)
     taken = next((known for known in shipped() if known.lower() == name.lower()), None)

@@ -44,10 +44,7 @@ OFFERS = {"lambda": "lam", "in": "inlet", "end": "tip", "time": "t", "der": "d"}
 def check_name(word: str, where: str) -> str:
     """Return `word` if it can name a model or an element.
 
-    Raises
-    ------
-    SpecError
-        If it cannot be a file's name and an identifier.
+    Raises `SpecError` if it cannot be a file's name and an identifier.
     """
     if not NAME.fullmatch(word) or len(word) > MAX_NAME:
         what = f"{quote(word)} is not a name"
@@ -62,10 +59,8 @@ def check_name(word: str, where: str) -> str:
 def check_symbol(word: str, where: str, taken: Collection[str] = ()) -> str:
     """Return `word` if it can be a symbol: a parameter, an input or a state.
 
-    Raises
-    ------
-    SpecError
-        If it is no identifier, a keyword, an import or a function of the law language.
+    Raises `SpecError` if it is no identifier, a keyword, an import or a function of the law
+    language.
     """
     check_name(word, where)
     if word in KEYWORDS:

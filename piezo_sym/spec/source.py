@@ -36,12 +36,8 @@ def shipped() -> tuple[str, ...]:
 def find(spec: str | Path) -> Path:
     """Return the file of a spec given by path or shipped name.
 
-    Raises
-    ------
-    FileError
-        If a bare name is neither shipped nor a file.
-    UsageError
-        If it is neither text nor a path.
+    Raises `FileError` if a bare name is neither shipped nor a file.  Raises `UsageError` if it is
+    neither text nor a path.
     """
     if not isinstance(spec, str | os.PathLike):
         raise UsageError(f"{quote(spec)} is no spec", "load", "a shipped name, or a spec's path")
@@ -60,10 +56,7 @@ def find(spec: str | Path) -> Path:
 def component_file(given: object, where: str, folder: Path | None) -> Path:
     """Return the file of a component of a spec in a folder.
 
-    Raises
-    ------
-    SpecError
-        If it is none below the folder of the spec.
+    Raises `SpecError` if it is none below the folder of the spec.
     """
     expected = "a shipped name, or a path in this file's folder"
     if not isinstance(given, str):
@@ -97,10 +90,7 @@ def real(path: Path) -> Path:
 def read(path: Path) -> str:
     """Return the text of a spec file.
 
-    Raises
-    ------
-    FileError
-        If it cannot be read, is too large, or is not UTF-8.
+    Raises `FileError` if it cannot be read, is too large, or is not UTF-8.
     """
     where = quote(str(path))
     try:
@@ -122,10 +112,7 @@ def read(path: Path) -> str:
 def data(text: str) -> dict[str, Any]:
     """Return the TOML data of a spec's text.
 
-    Raises
-    ------
-    SpecError
-        If the text is not TOML, or nested beyond what a spec needs.
+    Raises `SpecError` if the text is not TOML, or nested beyond what a spec needs.
     """
     if len(text) > MAX_BYTES:
         raise SpecError("is too large", "", f"at most {MAX_BYTES} characters")

@@ -21,12 +21,8 @@ def unroll(model: Model, counts: Mapping[str, int]) -> Model:
     """Return the model with each lane as elements ``<element>_1`` ... ``<element>_<count>``.
 
     A parameter or initial value given as a list becomes one for each lane; if the list is of
-    another length than asked for, its first value serves every lane.
-
-    Raises
-    ------
-    UsageError
-        If `counts` names no bank, or a size below 1.
+    another length than asked for, its first value serves every lane.  Raises `UsageError` if
+    `counts` names no bank, or a size below 1.
     """
     _check_counts(model, counts)
     sizes, owners, inner = {**banks(model), **counts}, bank_of(model), _cell_nodes(model)

@@ -53,10 +53,8 @@ class Template:
     def filled(self, data: Mapping[str, Any]) -> Texts:
         """Return the texts for the values of a spec, which has the template's `shape_hash`.
 
-        Raises
-        ------
-        OverflowError
-            If a value is beyond all numbers in coherent SI, as loading refuses it.
+        Raises `OverflowError` if a value is beyond all numbers in coherent SI, as loading refuses
+        it.
         """
         values = {place(name): text for name, text in _number_texts(data, self.factors)}
         values |= {place(HASH): spec_hash(data), place(VERDICT): self.verdict}

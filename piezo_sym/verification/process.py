@@ -59,10 +59,7 @@ def examined(iphs: IPHS) -> Report:
 def examined_model(model: Model) -> Report:
     """Return the report on a model, derived and made in the process of this interpreter.
 
-    Raises
-    ------
-    NetworkError, SpecError
-        If the model cannot be derived.
+    Raises `NetworkError` or `SpecError` if the model cannot be derived.
     """
     return _report(model, model, Future())
 

@@ -51,10 +51,7 @@ class Recheck:
 def check_installed() -> None:
     """Raise where what the checker needs is not installed.
 
-    Raises
-    ------
-    UsageError
-        Names what to install.
+    Raises `UsageError`, which names what to install.
     """
     if find_spec("cvc5") is None:
         remedy = "pip install 'piezo_sym[proof]'"
@@ -64,15 +61,12 @@ def check_installed() -> None:
 def recheck(spec: str, proofs: str) -> Recheck:
     """Return what the checker says of every row of a report.
 
+    Raises `UsageError` if what the checker needs is not installed.
+
     Parameters
     ----------
     spec : the text of the spec, as the user wrote it.
     proofs : the text of ``proofs.json``.
-
-    Raises
-    ------
-    UsageError
-        If what the checker needs is not installed.
     """
     check_installed()
     folder = temporary_folder()

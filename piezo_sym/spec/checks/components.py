@@ -13,10 +13,7 @@ from piezo_sym.spec.unit_text import quantity
 def check_component(spec: Tables, where: str, component: Component, model: Tables) -> None:
     """Check a component of a spec; `model` is the component's, flat.
 
-    Raises
-    ------
-    SpecError
-        If the component names something that does not exist, or with another unit.
+    Raises `SpecError` if the component names something that does not exist, or with another unit.
     """
     check_name(where.removeprefix("components."), where)
     used = {node for e in model.elements.values() for _, node in e.named("node")}

@@ -42,10 +42,8 @@ def check_names(spec: Tables) -> None:
 def check_model_name(word: str, where: str) -> str:
     """Return `word` if it can name a model, and so a generated module.
 
-    Raises
-    ------
-    SpecError
-        If it cannot be a file's name, or a module of that name would hide one of Python's.
+    Raises `SpecError` if it cannot be a file's name, or a module of that name would hide one of
+    Python's.
     """
     check_name(word, where)
     if iskeyword(word) or word in IMPORTS:
