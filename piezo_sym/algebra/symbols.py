@@ -19,6 +19,7 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.grammar import parse_rule
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import (
+    COMPARED,
     Add,
     Call,
     Cmp,
@@ -209,7 +210,7 @@ def _relation(op: str, left: sp.Expr, right: sp.Expr) -> Any:
     SymPy takes very long to order two sums that share terms.
     """
     plain = right.is_number or not (left.is_Add or right.is_Add)
-    return RELATIONS[op](left, right) if plain else RELATIONS[op](left - right, 0)
+    return COMPARED[op](left, right) if plain else COMPARED[op](left - right, 0)
 
 
 def _by_branches(build: Callable[..., sp.Expr], args: tuple[sp.Expr, ...]) -> sp.Expr:
@@ -231,9 +232,6 @@ def _choices(expr: sp.Basic) -> Iterator[sp.Piecewise]:
     elif not isinstance(expr, SymbolicLaneSum):
         for arg in expr.args:
             yield from _choices(arg)
-
-
-RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge}
 
 
 def _kinked(function: str, *args: sp.Expr) -> sp.Expr:

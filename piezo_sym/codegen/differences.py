@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from piezo_sym.codegen.program import Entry, Outer, OutputRow, Program, Quantity
-from piezo_sym.expressions.calculus import add, choices, div, mul, neg
+from piezo_sym.expressions.calculus import add, choices, div, mul, neg, rebuilt
 from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, Sym, knots, rebuild
 
 
@@ -93,11 +93,4 @@ def _exponentials(term: Expr) -> Iterator[tuple[Expr, Expr]]:
 
 def _normal(term: Expr) -> Expr:
     """Return a term in the form of `calculus`, so that equal terms are equal trees."""
-    match term:
-        case Neg(arg):
-            return neg(_normal(arg))
-        case Mul(left, right):
-            return mul(_normal(left), _normal(right))
-        case Div(top, bottom):
-            return div(_normal(top), _normal(bottom))
-    return term
+    return rebuilt(term, _normal) if isinstance(term, Neg | Mul | Div) else term

@@ -25,7 +25,7 @@ from piezo_sym.codegen.program import (
     needed,
 )
 from piezo_sym.expressions.calculus import add, derivative, mul
-from piezo_sym.expressions.tree import ONE, ZERO, Expr, LaneSum, Sym, names, rebuild
+from piezo_sym.expressions.tree import ONE, ZERO, Expr, LaneSum, Sym, names, replaced
 
 
 @final
@@ -113,10 +113,6 @@ class _NamedDerivatives:
             self.sums[key] = self.define(word, key, None, "sums over lanes")
         return self.sums[key]
 
-    def spelled(self, value: Expr) -> Expr:
-        """Return an expression with its `known` parts replaced by their names."""
-        return self.known.get(value) or rebuild(value, self.spelled)
-
 
 @final
 class _Chain:
@@ -134,7 +130,7 @@ class _Chain:
         slope = self.of(quantity.value, quantity.bank)
         if slope == _Slope():
             return
-        value = self.derivatives.spelled(slope.value)
+        value = replaced(slope.value, self.derivatives.known)
         if len(names(value)) > 1:
             bank = quantity.bank or self.state.bank
             if value not in self.named:

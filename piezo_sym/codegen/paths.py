@@ -15,7 +15,7 @@ from typing import final
 from piezo_sym.codegen.program import Described, Names, bank_of
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.expressions.calculus import add, derivative, div, mul, neg
-from piezo_sym.expressions.tree import ONE, Expr, Sym, rebuild
+from piezo_sym.expressions.tree import ONE, Expr, Sym, replaced
 from piezo_sym.spec.elements.ports import Conductor, DissipativePort, Storage
 
 
@@ -81,13 +81,11 @@ def stage_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:
     if not paths:
         return q
     given = {name for path in paths for name in (path.effort, path.slip, path.heat)}
-    heats = {q.heats[k]: Sym(p.heat) for p in paths for k in [q.outputs.index(Sym(p.slip))]}
-
-    def named(node: Expr) -> Expr:
-        return heats.get(node) or rebuild(node, named)
-
-    rest = tuple(replace(d, value=named(d.value)) for d in q.defined if d.name not in given)
-    return replace(q, defined=rest, heats=tuple(map(named, q.heats)), given=_lanes(paths))
+    named = {q.heats[k]: Sym(p.heat) for p in paths for k in [q.outputs.index(Sym(p.slip))]}
+    kept = [d for d in q.defined if d.name not in given]
+    defined = tuple(replace(d, value=replaced(d.value, named)) for d in kept)
+    heats = tuple(replaced(heat, named) for heat in q.heats)
+    return replace(q, defined=defined, heats=heats, given=_lanes(paths))
 
 
 def slope_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:

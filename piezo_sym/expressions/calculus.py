@@ -5,7 +5,7 @@ for the rules in the records of functions.  Constants are folded as exact ration
 generated text does not depend on the version of SymPy.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from itertools import pairwise
 
@@ -257,20 +257,25 @@ def kinks(node: Expr) -> Iterator[Cmp]:
 
 def inserted(node: Expr, words: Mapping[str, Expr]) -> Expr:
     """Return a tree with names replaced, its sums and products simplified as here."""
+    if isinstance(node, Sym):
+        return words.get(node.name, node)
+    return rebuilt(node, lambda part: inserted(part, words))
+
+
+def rebuilt(node: Expr, change: Callable[[Expr], Expr]) -> Expr:
+    """Return `node` with `change` applied to its parts, its own operation simplified as here."""
     match node:
-        case Sym(name):
-            return words.get(name, node)
         case Neg(arg):
-            return neg(inserted(arg, words))
+            return neg(change(arg))
         case Add(terms):
-            return add(*(inserted(term, words) for term in terms))
+            return add(*map(change, terms))
         case Mul(left, right):
-            return mul(inserted(left, words), inserted(right, words))
+            return mul(change(left), change(right))
         case Div(left, right):
-            return div(inserted(left, words), inserted(right, words))
+            return div(change(left), change(right))
         case Pow(base, exponent):
-            return power(inserted(base, words), exponent)
-    return rebuild(node, lambda part: inserted(part, words))
+            return power(change(base), exponent)
+    return rebuild(node, change)
 
 
 def compared(node: Expr) -> Expr:

@@ -5,7 +5,7 @@ arithmetic is rigorous.  A witness is shown only after its law has been evaluate
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import Any
 
@@ -15,6 +15,7 @@ from piezo_sym.expressions.calculus import choices, increasing
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.grammar import MAX_POWER, parse_rule
 from piezo_sym.expressions.tree import (
+    COMPARED,
     Add,
     Call,
     Cmp,
@@ -34,16 +35,6 @@ from piezo_sym.expressions.tree import (
 BITS = 160
 #: Functions are not evaluated at larger arguments; rational powers of more bits become balls.
 LARGEST_ARGUMENT, MOST_BITS = 10**6, 10**5
-
-#: Whether a comparison holds, by the sign of left - right; proofs also use = and !=.
-OUTCOMES: Mapping[str, Callable[[int], bool]] = {
-    "<": lambda sign: sign < 0,
-    "<=": lambda sign: sign <= 0,
-    ">": lambda sign: sign > 0,
-    ">=": lambda sign: sign >= 0,
-    "=": lambda sign: sign == 0,
-    "!=": lambda sign: sign != 0,
-}
 
 
 class TooCloseError(ArithmeticError):
@@ -122,7 +113,7 @@ def exact(number: Value) -> Value:
 
 def _holds(condition: Cmp, values: Mapping[Any, Value]) -> bool:
     difference = _value(condition.left, values) - _value(condition.right, values)
-    return OUTCOMES[condition.op](_sign(difference))
+    return bool(COMPARED[condition.op](_sign(difference), 0))
 
 
 def _value(node: Expr, values: Mapping[Any, Value]) -> Value:

@@ -4,9 +4,9 @@ Input: a law and its letter.  Output: a tree in which odd and even functions hav
 as in the law itself, so that W(z) + W(-z) of an odd law cancels term by term.
 """
 
-from piezo_sym.expressions.calculus import add, div, mul, neg, power
+from piezo_sym.expressions.calculus import add, neg, power, rebuilt
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Pow, Sym, knots
+from piezo_sym.expressions.tree import Add, Call, Expr, Neg, Pow, Sym, knots
 
 
 def reflected(law: Expr, letter: str) -> Expr:
@@ -21,14 +21,8 @@ def reflected(law: Expr, letter: str) -> Expr:
     match law:
         case Sym(name):
             return Neg(law) if name == letter else law
-        case Neg(arg):
-            return neg(turned(arg))
         case Add(terms):
             return _sum(tuple(map(turned, terms)))
-        case Mul(left, right):
-            return mul(turned(left), turned(right))
-        case Div(left, right):
-            return div(turned(left), turned(right))
         case Pow(base, exponent):
             inner = turned(base)
             if isinstance(inner, Neg) and exponent.denominator == 1:
@@ -45,9 +39,7 @@ def reflected(law: Expr, letter: str) -> Expr:
                 return Call(function, (inner, *rest))
             call = Call(function, (inner.arg, *rest))
             return neg(call) if parity == "odd" else call
-        case If(then, Cmp(op, left, right), other):
-            return If(turned(then), Cmp(op, turned(left), turned(right)), turned(other))
-    return law
+    return rebuilt(law, turned)
 
 
 def _sum(terms: tuple[Expr, ...]) -> Expr:

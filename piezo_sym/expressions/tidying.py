@@ -7,8 +7,8 @@ from collections.abc import Collection
 from fractions import Fraction
 
 from piezo_sym.expressions.calculus import add, inserted, mul, neg
-from piezo_sym.expressions.exact_eval import OUTCOMES
 from piezo_sym.expressions.tree import (
+    COMPARED,
     ONE,
     Add,
     Cmp,
@@ -61,7 +61,7 @@ def settled(node: Expr, positive: Collection[str]) -> Expr:
         case If(then, Cmp(op, left, right), other):
             sign = _sign(add(left, neg(right)), positive)
             if sign is not None:
-                return then if OUTCOMES[op](sign) else other
+                return then if COMPARED[op](sign, 0) else other
         case Pow(Neg(arg), exponent) if exponent % 2 == 0:
             return Pow(arg, exponent)
     return inner

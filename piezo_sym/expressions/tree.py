@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from operator import eq, ge, gt, le, lt, ne
 from typing import Any, TypeVar, cast, dataclass_transform, final
 
 from piezo_sym.expressions.functions import FUNCTIONS
@@ -141,6 +142,16 @@ class LaneSum(_Tree):
 Expr = Num | Sym | Neg | Add | Mul | Div | Pow | Call | If | LaneSum
 Node = Expr | Cmp
 
+#: Whether a comparison holds between two numbers, of any type; proofs also use = and !=.
+COMPARED: Mapping[str, Callable[..., Any]] = {
+    "<": lt,
+    "<=": le,
+    ">": gt,
+    ">=": ge,
+    "=": eq,
+    "!=": ne,
+}
+
 ZERO, ONE = Num(Fraction(0)), Num(Fraction(1))
 
 
@@ -212,9 +223,12 @@ def decided(node: Expr, known: Mapping[Cmp, bool]) -> Expr:
 
 def replace(node: Expr, mapping: Mapping[str, Expr]) -> Expr:
     """Return `node` with each name in `mapping` replaced by its tree, all at once."""
-    if isinstance(node, Sym):
-        return mapping.get(node.name, node)
-    return rebuild(node, lambda part: replace(part, mapping))
+    return replaced(node, {Sym(name): tree for name, tree in mapping.items()})
+
+
+def replaced(node: Expr, known: Mapping[Any, Expr]) -> Expr:
+    """Return `node` with each part that is `known` replaced by another tree, outermost first."""
+    return known.get(node) or rebuild(node, lambda part: replaced(part, known))
 
 
 def rename(node: Expr, mapping: Mapping[str, str]) -> Expr:

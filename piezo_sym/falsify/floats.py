@@ -16,6 +16,7 @@ import numpy as np
 from piezo_sym.expressions.calculus import choices, increasing, rule
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
+    COMPARED,
     Add,
     Call,
     Cmp,
@@ -33,12 +34,6 @@ from piezo_sym.expressions.tree import (
 
 #: A tree, and the bank of which it has a value per lane.
 Row = tuple[Expr, str | None]
-COMPARED: Mapping[str, Callable[..., Any]] = {
-    "<": np.less,
-    "<=": np.less_equal,
-    ">": np.greater,
-    ">=": np.greater_equal,
-}
 
 
 @final

@@ -9,7 +9,7 @@ the branch in which the function stands.  Outside its domain a function's symbol
 that follows from facts is a theorem; a counterexample has to be confirmed on the law itself.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -33,7 +33,7 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     Sym,
-    rebuild,
+    replaced,
     walk,
 )
 from piezo_sym.proofs.facts import Clause, facts_on, facts_on_two
@@ -76,7 +76,7 @@ class Parts:
 
     def without_functions(self, law: Expr) -> Expr:
         """Return a law with each function replaced by its symbol."""
-        return _replaced(law, dict(self.words))
+        return replaced(law, dict(self.words))
 
     def facts(self, nonzero: frozenset[str] = frozenset()) -> Iterator[Clause]:
         """Yield facts on the parts; divisors symbol of `nonzero` names need no premise."""
@@ -112,7 +112,7 @@ def parts_of(laws: Iterable[Expr], taken: frozenset[str]) -> Parts:
             if known is None or node in words:
                 continue
             function, given, exponent = known
-            value = ratio(_replaced(given, words))
+            value = ratio(replaced(given, words))
             symbol = Sym(name(f"{function}_{len(found) + 1}"))
             simple = isinstance(value.top, Sym | Num) and value.bottom == ONE
             argument = value.top if simple else Sym(name(f"{function}_argument_{len(found) + 1}"))
@@ -145,12 +145,6 @@ def _function(node: Node) -> tuple[str, Expr, Fraction | Expr] | None:
         case Pow(base, exponent) if exponent.denominator != 1:
             return "root", base, exponent
     return None
-
-
-def _replaced(law: Expr, words: Mapping[Node, Sym]) -> Expr:
-    if law in words:
-        return words[law]
-    return rebuild(law, lambda part: _replaced(part, words))
 
 
 def ratio(law: Expr) -> Ratio:

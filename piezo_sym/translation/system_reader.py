@@ -25,8 +25,6 @@ from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import call, power, raised, size_of
 from piezo_sym.translation.signs import assume, compare, on_path, reading
 
-_RELATIONS = {sp.Gt: ">", sp.Ge: ">=", sp.Lt: "<", sp.Le: "<=", sp.Eq: "==", sp.Ne: "!="}
-
 
 @final
 class SystemReader:
@@ -184,9 +182,9 @@ class SystemReader:
         field = self.field
         if condition in (sp.true, sp.false):
             return field.number(int(bool(condition)))
-        if type(condition) in _RELATIONS:
+        if isinstance(condition, sp.Rel):
             left, right = map(self, condition.args)
-            return compare(_RELATIONS[type(condition)], left, right)
+            return compare(condition.rel_op, left, right)
         parts = [self._test(part) for part in condition.args]
         if not isinstance(condition, sp.And | sp.Or | sp.Not):
             raise NotShownError(f"{type(condition).__name__} in a condition of the proved system")

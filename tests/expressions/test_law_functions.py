@@ -20,11 +20,12 @@ from piezo_sym.codegen.c.style import c_piece, c_style, helpers
 from piezo_sym.codegen.numpy.style import numpy_text
 from piezo_sym.expressions.calculus import clause, derivative, rule
 from piezo_sym.expressions.dimensions import dimension, matches
-from piezo_sym.expressions.exact_eval import OUTCOMES, evaluate, value_of
+from piezo_sym.expressions.exact_eval import evaluate, value_of
 from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.reflection import reflected
 from piezo_sym.expressions.tree import (
+    COMPARED,
     Add,
     Call,
     Cmp,
@@ -102,7 +103,7 @@ def precise(node, words):
 
 def holds(condition, words):
     difference = precise(condition.left, words) - precise(condition.right, words)
-    return OUTCOMES[condition.op]((difference > 0) - (difference < 0))
+    return COMPARED[condition.op](difference, 0)
 
 
 @pytest.fixture(autouse=True)
