@@ -9,8 +9,7 @@ from typing import TypeVar
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.exact_eval import evaluate
-from piezo_sym.expressions.grammar import read_condition, read_law
-from piezo_sym.expressions.lexer import RefusedError
+from piezo_sym.expressions.grammar import RefusedError, read_condition, read_law
 from piezo_sym.expressions.size import check_size
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp, Div, Expr, Sym, children, names

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import final
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.expressions.lexer import MAX_MAGNITUDE, RefusedError
+from piezo_sym.expressions.grammar import MAX_MAGNITUDE, RefusedError
 from piezo_sym.expressions.tree import (
     Add,
     Call,

@@ -17,8 +17,7 @@ from flint import fmpz
 
 from piezo_sym.errors import SpecError, nearest, quote
 from piezo_sym.expressions.dimensions import BASES
-from piezo_sym.expressions.grammar import parse_rule
-from piezo_sym.expressions.lexer import RefusedError
+from piezo_sym.expressions.grammar import RefusedError, parse_rule
 from piezo_sym.expressions.tree import Div, Expr, Mul, Num, Pow, Sym
 
 #: Names and their powers.
