@@ -18,13 +18,13 @@ from typing import final
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
+from sympy.utilities.iterables import connected_components
 
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.errors import NetworkError, listing, quote, with_article
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.kirchhoff import Laws
-from piezo_sym.network.nodes import reachable
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.ports import DissipativePort
@@ -74,7 +74,7 @@ def loops_of(laws: Laws, M: LaneMatrix) -> Loops:
     Raises `NetworkError` if a law in a loop is not linear, or a loop has too many resistors; names
     them.
     """
-    groups = tuple(_groups(M))
+    groups = _groups(M)
     taken = set(laws.circuit.names)
     found = [slope for group in groups for slope in _slopes(laws, group, taken)]
     slopes = {slope.process: slope.symbol for slope in found}
@@ -105,17 +105,11 @@ def _symbol(base: str, taken: set[str]) -> sp.Symbol:
     return sp.Symbol(name, real=True)
 
 
-def _groups(M: LaneMatrix) -> Iterator[tuple[int, ...]]:
-    """Yield the processes that depend on each other, group by group, in declaration order."""
-    near: dict[int, set[int]] = {}
-    for (row, col), _, _ in M.entries():
-        near.setdefault(row, set()).add(col)
-        near.setdefault(col, set()).add(row)
-    left = sorted(near)
-    while left:
-        group = reachable(left[:1], near)
-        yield tuple(sorted(group))
-        left = [k for k in left if k not in group]
+def _groups(M: LaneMatrix) -> list[tuple[int, ...]]:
+    """Return the processes that depend on each other, group by group, in declaration order."""
+    pairs = [pair for pair, _, _ in M.entries()]
+    groups = connected_components(({k for pair in pairs for k in pair}, pairs))
+    return sorted(tuple(sorted(group)) for group in groups)
 
 
 def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slope]:

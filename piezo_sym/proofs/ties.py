@@ -13,6 +13,7 @@ from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Sym, names, replace
 from piezo_sym.iphs import IPHS
+from piezo_sym.network.nodes import reachable
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
@@ -65,14 +66,8 @@ def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
 
 def _symbols(iphs: IPHS, drive: sp.Expr) -> set[sp.Symbol]:
     """Return the symbols that a drive depends on, also through its shares and slopes."""
-    definitions = dict((*iphs.shares, *iphs.slopes))
-    found: set[sp.Symbol] = set()
-    left = set(drive.free_symbols)
-    while left:
-        symbol = left.pop()
-        found.add(symbol)
-        left |= set(getattr(definitions.get(symbol), "free_symbols", ())) - found
-    return found
+    definitions = (*iphs.shares, *iphs.slopes)
+    return reachable(drive.free_symbols, {s: value.free_symbols for s, value in definitions})
 
 
 def _words(iphs: IPHS) -> Iterator[tuple[sp.Symbol, Expr]]:
