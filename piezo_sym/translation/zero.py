@@ -69,9 +69,9 @@ def _spelled(value: Value, letter: int) -> Value:
 
 
 def _is_zero(value: Value, *, edges: Edges) -> bool:
-    parts = _apart(value)
-    if len(parts) > 1:
-        return all(is_zero(part, edges=edges) for part in parts)
+    parts = _apart(value)  # each may not be zero where a difference of sums is
+    if len(parts) > 1 and all(is_zero(part, edges=edges) for part in parts):
+        return True
     groups = _groups(value)
     if not groups:
         return vanishes(value)
