@@ -1,5 +1,6 @@
 """Property tests draw the same examples in every run; all workers share one cache of their own."""
 
+import gc
 import hashlib
 import os
 import pickle
@@ -17,6 +18,9 @@ from hypothesis import settings
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
 
+# Modules and tests stay: to look for garbage among them as often as Python does takes long.
+gc.set_threshold(50_000, 20, 20)
+
 # Where pytest runs in the background of a shell, SIGINT is ignored, by all that tests start, too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -30,7 +34,7 @@ def pytest_collection_modifyitems(items):
     """
     cases = defaultdict(list)
     for item in items:
-        if mark := item.get_closest_marker("some"):
+        if (mark := item.get_closest_marker("some")) and not item.get_closest_marker("long"):
             cases[item.nodeid.split("[")[0], mark.args[0]].append(item)
     for (_, n), found in cases.items():
         found.sort(key=lambda item: crc32(item.name.partition("[")[2].encode()))

@@ -149,6 +149,7 @@ area = "A"
 """
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize("pressure", [1e4, 1e5, 1e6])
 @pytest.mark.parametrize("start", [0.0, 1e-3])
 def test_springs_in_parallel_keep_their_difference(pressure: float, start: float) -> None:

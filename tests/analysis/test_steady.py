@@ -491,6 +491,7 @@ state = "z"
 """
 
 
+@pytest.mark.some(1)
 @pytest.mark.usefixtures("cache")
 @pytest.mark.parametrize("start", [{}, {"q": 0.01}, {"z": -0.005}])
 def test_a_stop_that_sticks_keeps_its_slip(start):
@@ -510,6 +511,7 @@ FREE = FREE.replace('stiffness = "k"', 'force = "k*deadzone(q, 100*q_0)"')
 FREE = FREE.replace("F_s = {", 'q_0 = { value = 1.0, unit = "m" }\nF_s = {')
 
 
+@pytest.mark.some(1)
 @pytest.mark.usefixtures("cache")
 @pytest.mark.parametrize(("start", "phase"), [(0.0, 0.0), (3.0, 1.0)])
 def test_a_free_position_is_where_the_start_and_the_drive_put_it(start, phase):

@@ -59,7 +59,7 @@ def test_explicit_rates_are_the_modules(problem, path, number):
     assert np.all(np.abs(at(problem.rates, problem, x) - expected) <= 1e-9 * size)
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(4)
 def test_scaled_rates_are_those_of_scaled_states(problem, path):
     x, _ = drawn(problem, path, 0)
     scale = np.random.default_rng(1).uniform(0.1, 3, x.size)
@@ -88,6 +88,7 @@ CONDITIONS = [
 ]
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("condition", CONDITIONS)
 def test_switches_know_and_or_and_not(condition):
     a, b = sp.symbols("a b", real=True)

@@ -38,6 +38,7 @@ def test_a_family_varies_the_inductance_around_its_value(family):
     assert family.good_to <= 1e-7
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("k", [0, 4, 10])
 def test_ends_are_those_of_runs_by_lsoda(family, k):
     run = simulate(

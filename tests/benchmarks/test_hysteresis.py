@@ -7,6 +7,7 @@ from tests.benchmarks.hysteresis import error, mass_on_stops, run_of
 from tests.benchmarks.slips_by_hand import exact, regularised
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("periods", [0.1, 0.75, 3])
 def test_events_by_hand_are_the_runs(periods):
     mass = mass_on_stops()

@@ -38,7 +38,7 @@ def text_of(spec):
     return text
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("words", HOSTILE)
 def test_a_text_in_the_head_adds_no_code(spec, words):
     plain = outline(text_of(spec))

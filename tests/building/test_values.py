@@ -53,7 +53,7 @@ def changed(model, rng):
     return data
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", shipped())
 def test_a_template_has_every_value(name):
     """Printed with other values, or filled with them: the same texts."""

@@ -41,6 +41,7 @@ FEW_LANES = (
 )
 
 
+@pytest.mark.some(6)
 @pytest.mark.parametrize("zero", FEW_LANES)
 def test_what_vanishes_for_few_lanes_is_seen(zero):
     system = stated(PIEZO_STACK)["system"]
@@ -134,6 +135,7 @@ def test_a_condition_that_the_proofs_alone_have_is_none(condition):
     assert refused(text, stated(PIEZO_STACK))
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize(
     ("old", "new"),
     [

@@ -65,6 +65,7 @@ def test_banks_are_confirmed(cells):
     assert refused(text, stated(text)) == {}
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize(
     ("cells", "old", "new"),
     [
@@ -91,6 +92,7 @@ def is_confirmed(text, proofs):
         return False
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize(
     ("old", "new"),
     [

@@ -25,6 +25,7 @@ WRONG = (
 )
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize("law", CONFIRMED)
 def test_energies_are_confirmed_on_each_branch(law):
     text = TEXT.replace("LAW", law)
@@ -39,6 +40,7 @@ def test_a_spec_with_an_energy_of_saturate_is_read():
     assert ("welldef", "spring") not in rows
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize(("law", "old", "new"), WRONG)
 def test_an_energy_changed_on_one_side_is_not_confirmed(law, old, new):
     text = TEXT.replace("LAW", law)
@@ -61,6 +63,7 @@ def test_a_domain_that_holds_a_state_has_no_edges(pinned):
     assert ("energy", "") in refused(text, proofs)
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("energy", BAD_ENERGIES[::2])
 def test_energies_that_jump_or_lack_a_value_are_not_confirmed(energy):
     text = TEXT.replace('force = "LAW"', f'energy = "{energy}"')

@@ -53,7 +53,7 @@ WRONGLY_PROVED = {
 }
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("name", WRONGLY_PROVED)
 def test_a_law_that_gives_power_is_not_confirmed(name):
     text = WRONGLY_PROVED[name]
@@ -98,7 +98,7 @@ CHANGES = {
 }
 
 
-@pytest.mark.some(9)
+@pytest.mark.some(4)
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_changed_system_is_not_confirmed(name):
     proofs, (old, new) = stated(PIEZO_STACK), CHANGES[name]
@@ -131,6 +131,7 @@ def test_a_row_that_is_open_or_unknown_is_not_confirmed():
     }
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize(
     ("law", "row"),
     [

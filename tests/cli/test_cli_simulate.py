@@ -458,7 +458,7 @@ def test_a_closed_pipe_loses_no_result(words, reader, written, tmp_path):
     assert [name for name in written if not (tmp_path / name).stat().st_size] == []
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("words", ["kinds", "simulate piezo_stack --duration 1e-3", "schema"])
 def test_a_full_output_is_one_line(words):
     command = f"{sys.executable} -m piezo_sym {words} > /dev/full"

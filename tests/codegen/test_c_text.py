@@ -123,7 +123,7 @@ def words_of_c(tmp_path_factory):
     return folder, written(crowded(words), folder)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("compiler", "standard"),
     [(name, "c99") for name in COMPILERS]
@@ -157,7 +157,7 @@ def test_names_that_c_cannot_have_are_told(tmp_path):
     assert "    double EOF_; /* EOF: [ohm]; spec: 2.0 */\n" in header
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("words", ["*/ int broken;", "/* open", "/*/ both", "??/", "end\\", "é"])
 def test_texts_stay_in_their_comments(words, tmp_path):
     data = load("piezo_stack").model_dump()

@@ -47,6 +47,7 @@ def assembled(found, coupling, rows):
     return whole[:n, :n] + whole[:n, n:] @ whole[n:, :n], at
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", NAMES)
 def test_slopes_are_the_derivative_of_the_rates_on_kept_branches(name, tmp_path):
     model = load(name if name == "piezo_stack" else str(SPECS / f"{name}.toml"))

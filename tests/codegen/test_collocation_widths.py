@@ -70,6 +70,7 @@ class Reals:
         self.record = aligned(np.frombuffer(bytes(record), dtype=float))
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("spec", ["piezo_stack", SPECS / "output_resistance_of_a_bank.toml"])
 def test_vectors_hold_what_numbers_hold(spec, tmp_path):
     module = module_of(load(str(spec)))

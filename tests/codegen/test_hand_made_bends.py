@@ -100,7 +100,7 @@ def ran(module, duration=3.0, **options):
     return run, x, np.abs(u - u[0]).max() / u.max()
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("way", tiers(WAYS, 1, 2, 7, 10), ids=str)
 def test_balances_close_over_contacts(bounce, way):
     run, x, left = ran(bounce, **way)
@@ -164,6 +164,7 @@ def test_steps_that_end_at_kinks_are_fewer(bounce, tmp_path):
     assert here < 0.7 * there
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("count", [3, 40], ids=["stages in vectors", "lanes in vectors"])
 @pytest.mark.parametrize("way", tiers([WAYS[2], WAYS[7], WAYS[9], WAYS[11]], 1), ids=str)
 def test_a_bank_of_contacts(tmp_path, way, count):

@@ -41,7 +41,7 @@ def check_balances(run, process):
     assert np.all(produced[-1] > 0)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("way", tiers(WAYS, 1, 5), ids=str)
 @pytest.mark.parametrize("name", ["stopped", "maxwell", "rubbing"])
 def test_balances_close(made, name, way):

@@ -11,7 +11,7 @@ from piezo_sym.modules import module_of
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(4)
 @pytest.mark.parametrize("path", ["piezo_stack", *SPECS], ids=lambda path: Path(path).stem)
 def test_a_small_step_follows_the_rates_at_its_middle(path):
     model, h = load(path), 1e-8

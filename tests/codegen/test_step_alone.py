@@ -39,7 +39,7 @@ class Alone:
         return self.function(*given, at(self.booked), at(self.space))
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("path", ["piezo_stack", *SPECS[::4]], ids=lambda path: Path(path).stem)
 def test_it_takes_the_steps_of_a_stepper(path, tmp_path):
     model, h = load(path), 1e-6
@@ -86,7 +86,7 @@ def test_a_step_that_leaves_the_domain_leaves_the_state(tmp_path):
     assert not np.array_equal(x, before)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("path", ["piezo_stack", *SPECS], ids=lambda path: Path(path).stem)
 def test_the_example_of_the_header_is_a_program(path, tmp_path):
     """It compiles as it stands, and ends where a Stepper of the same steps does."""

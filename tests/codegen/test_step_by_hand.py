@@ -33,7 +33,7 @@ def starts(lanes):
         yield np.array([*head, *(currents * P.L), entropy])
 
 
-@pytest.mark.some(6)
+@pytest.mark.some(3)
 @pytest.mark.parametrize("lanes", [1, 2, 5])
 @pytest.mark.parametrize("h", [1e-7, 1e-6, 1e-5])
 def test_one_step(lanes, h):

@@ -100,7 +100,7 @@ def model(request):
     return parse(text(*request.param))
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 def test_generated_modules_are_right(model, tmp_path):
     path = generate(model, tmp_path, allow_unproved=True)[0]
     module = load_module(Path(path))
@@ -112,7 +112,7 @@ def test_generated_modules_are_right(model, tmp_path):
                 np.testing.assert_allclose(twin.rhs(x, u, p), rates(x, u), rtol=1e-12)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 def test_jacobians_are_right(model, tmp_path):
     module = load_module(Path(generate(model, tmp_path, allow_unproved=True)[0]))
     p = module.Parameters()
@@ -143,7 +143,7 @@ def test_expanded_systems_are_right(model):
         np.testing.assert_allclose(np.array(found, float).ravel(), rates(x, u), rtol=1e-12)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 def test_verdicts_do_not_depend_on_the_name(model):
     plain = parse(text("other", "phi"))
 

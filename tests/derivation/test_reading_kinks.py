@@ -33,6 +33,7 @@ KNOWN = {
 }
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize(
     ("law", "read", "branches"),
     [

@@ -46,7 +46,7 @@ def exact():
     return at_end
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(("name", "way", "bound"), CASES)
 def test_runs_agree_with_rates_by_hand_and_close_both_balances(name, way, bound, exact):
     run = ran(name, **way)
@@ -78,6 +78,7 @@ def test_two_ways_to_say_a_stop_run_alike():
     assert np.array_equal(one.q.values, other.q.values)
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     "energy",
     [

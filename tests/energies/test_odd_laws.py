@@ -47,7 +47,7 @@ def force(law, q):
     return np.sign(q) * LAWS[law](abs(q))
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("law", LAWS)
 def test_it_is_proved_and_has_the_energy_of_quadrature(law):
     text = TEXT.replace("LAW", law)
@@ -78,7 +78,7 @@ def test_what_a_busy_machine_does_to_the_search_does_not_decide_what_has_an_ener
     assert done.stdout == "q**2\n"
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("law", LAWS)
 def test_it_swings_as_its_equation_typed_by_hand(law):
     run = simulate(parse(TEXT.replace("LAW", law)), duration=4.0, rtol=1e-9, times=[0.0, 4.0])

@@ -161,7 +161,7 @@ def test_parity_bounds_sign_and_growth(name):
         assert function(mpmath.mpf(record.known[0])) == record.known[1]
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", [n for n in FUNCTIONS if RECORDS[n].transcendental])
 @given(low=REALS, width=REALS.map(abs), share=st.fractions(0, 1, max_denominator=50))
 def test_values_lie_in_every_enclosure(name, low, width, share):
@@ -172,7 +172,7 @@ def test_values_lie_in_every_enclosure(name, low, width, share):
     assert found is None or found.lo <= value <= found.hi
 
 
-@pytest.mark.some(6)
+@pytest.mark.some(3)
 @pytest.mark.parametrize("name", [name for name in SMOOTH if name != "pow"])
 @given(at=st.floats(-4, 4).map(Fraction))
 def test_jets_hold_the_taylor_series(name, at):

@@ -24,6 +24,7 @@ def points(name):
     return [points for _, _, points in hunt(name)._blocks()]
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("name", ["piezo_stack", "electromagnet", "stack_maxwell"])
 def test_points_are_those_of_a_search_along_all_columns(name, monkeypatch):
     found = points(name)

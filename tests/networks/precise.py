@@ -18,8 +18,15 @@ RELATIONS = {sp.Lt: operator.lt, sp.Le: operator.le, sp.Gt: operator.gt, sp.Ge: 
 
 def measured(expr, values):
     """Return (value, size) of an expression at exactly the floating-point numbers given."""
+    return all_measured([expr], values)[0]
+
+
+def all_measured(expressions, values):
+    """Return (value, size) of each expression; what they have in common is computed once."""
+    known = {}
     with mp.workdps(DIGITS):
-        return _measured(expr, {name: mp.mpf(v) for name, v in values.items()}, {})
+        exact = {name: mp.mpf(v) for name, v in values.items()}
+        return [_measured(expr, exact, known) for expr in expressions]
 
 
 def _measured(expr, values, known):

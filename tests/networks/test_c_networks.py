@@ -64,8 +64,8 @@ def check_twins(first, second, x, u):
 def check(spec, seed):
     """Check the compiled module of a network at two states."""
     iphs = derivable(spec)
-    places = [point(spec, iphs, seed + n) for n in range(2)]
     systems = [iphs.expand(), *([iphs] if banks(iphs.model) else [])]
+    places = [point(spec, systems[0].x, seed + n) for n in range(2)]
     with tempfile.TemporaryDirectory() as folder:
         module, compiled = twins(iphs, folder)
         for x, u in places:
@@ -102,7 +102,7 @@ def check_start(module, compiled, place):
     assert np.all(np.diff(sums[:, -2:], axis=0) >= 0)
 
 
-@pytest.mark.some(17)
+@pytest.mark.some(8)
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_specs(path):
     model = load(path)
@@ -114,7 +114,7 @@ def test_specs(path):
 
 
 def test_networks():
-    assert len(explore(5, check)) >= 5
+    assert len(explore(4, check)) >= 4
 
 
 @pytest.mark.long

@@ -75,7 +75,7 @@ def compared(request):
     return Compared(model, module_of(model))
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(4)
 @pytest.mark.parametrize("above", ABOVE)
 def test_right_above_the_reference_temperature(compared, above):
     for seed in range(3):
@@ -133,6 +133,7 @@ def rubbing():
     return Compared(parse(RUBBING))
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("p", [-2.0, -1e-300, -0.0, 0.0, 1e-300, 1.9999999999999998, 2.0, 2.1])
 def test_where_laws_jump_and_bend(rubbing, p):
     x = np.array([p, 2.0 * np.log1p(1e-3 / 300.0)])

@@ -227,7 +227,7 @@ def states(module):
     return [rng.uniform(-0.5, 0.5, size) for _ in range(10)]
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 def test_rates(case):
     _, module, rates = case
     for x in states(module):
@@ -254,6 +254,7 @@ def test_power_balance(case):
         assert np.isclose(slope, module.supply(x, U, p).sum(), rtol=1e-6, atol=1e-6)
 
 
+@pytest.mark.some(5)
 def test_entropy_balance(case):
     _, module, _ = case
     p = module.Parameters()
@@ -263,7 +264,7 @@ def test_entropy_balance(case):
         assert np.isclose(module.rhs(x, U, p)[0], produced.sum(), rtol=1e-12)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 def test_proofs(case):
     model, _, _ = case
     process.examined_model(model).raise_if_not_proved()

@@ -58,9 +58,14 @@ def attempted(run):
     try:
         return run()
     except RunError as error:
-        message = str(error)
-        assert message.isprintable()
-        return float(re.search(r" t = (\S+) s", message)[1])
+        return stopped_at(error)
+
+
+def stopped_at(error):
+    """Return the time at which a run says that it cannot go on."""
+    message = str(error)
+    assert message.isprintable()
+    return float(re.search(r" t = (\S+) s", message)[1])
 
 
 def check(spec, seed):
@@ -68,7 +73,7 @@ def check(spec, seed):
     pumped = any(e["kind"] == "thermoelectric" for e in spec["elements"].values())
     assume(not (pumped and jumps(spec)))  # it may slide along the jump, step by tiny step
     iphs = derivable(spec)
-    x, u = point(spec, iphs, seed)
+    x, u = point(spec, iphs.expand().x, seed)
     with tempfile.TemporaryDirectory() as folder:
         module = written(iphs.model, folder, allow_unproved=True)
         x = held(spec, module, x)
@@ -96,7 +101,7 @@ def reference(request):
     return model, module, simulate(module, rtol=1e-12, **SHORT)
 
 
-@pytest.mark.some(10)
+@pytest.mark.some(4)
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"rtol": 1e-9}, {"step": 1e-6}], ids=str)
 def test_specs(reference, accuracy):
     model, module, wanted = reference
@@ -140,12 +145,12 @@ def test_friction_is_right_until_the_block_sticks(accuracy):
     module, options = module_of(parse(RUBBING)), {"inputs": {"F": 1.0}, "times": 6}
     found = check_run(module, [1.0, 0.0], duration=0.49, **accuracy, **options)
     assert np.allclose(found.p, 1 - 2 * found.time, rtol=0, atol=1e-12)
-    stop = attempted(lambda: simulate(module, duration=1.0, method=METHOD, **accuracy, **options))
-    assert 0.5 - 1 / 32 <= stop <= 0.5 + 1e-9  # where it stands
-    with pytest.raises(RunError, match=r"friction that sticks is a 'stop', or F_c\*tanh"):
+    with pytest.raises(RunError, match=r"friction that sticks is a 'stop', or F_c\*tanh") as stop:
         simulate(module, duration=1.0, method=METHOD, **accuracy, **options)
+    assert 0.5 - 1 / 32 <= stopped_at(stop.value) <= 0.5 + 1e-9  # where it stands
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-2}], ids=str)
 def test_a_run_never_takes_entropy_even_of_a_model_that_would(accuracy, tmp_path):
     """A damper that drives, generated though it is refuted: its first step is not taken."""

@@ -95,4 +95,4 @@ def test_laws_of_networks(part):
 
 @pytest.mark.parametrize("part", PARTS)
 def test_networks(part):
-    check_part(25 if part else 5, check, part)
+    check_part(25 if part else 3, check, part)

@@ -278,7 +278,7 @@ def test_proved(case):
     assert {row.id for row in report.rows} >= {"energy", "entropy", "sigma", "units", "program"}
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 def test_runs_agree_with_the_rates_by_hand(case):
     by_hand, text, iphs = case
     drive = {name: sine(2.0, 0.7) for name in iphs.model.inputs}

@@ -56,6 +56,7 @@ def rates(t, x):
     return [force, v - slip, v - dahl, current - leak, heat / T]
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
 def test_a_run_is_that_of_the_equations_by_hand_and_both_laws_close(rtol):
     run = simulate(load(SPECS / "slips.toml"), inputs=DRIVE, duration=2.0, rtol=rtol)
@@ -200,6 +201,7 @@ def with_more(text):
     )
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", NAMED)
 def test_known_models_of_friction_are_passive(name):
     law, by_rate = NAMED[name]

@@ -80,6 +80,7 @@ def test_its_module_agrees_with_sympy(model, exact):
             assert np.allclose(found, numbers(wanted, at), rtol=1e-11, atol=1e-12)
 
 
+@pytest.mark.some(10)
 def test_both_balances_close(model, exact):
     module, p = module_of(model), module_of(model).Parameters()
     for x, u, at in points(model, exact):
@@ -90,12 +91,13 @@ def test_both_balances_close(model, exact):
         assert np.all(module.entropy_production(x, u, p) >= 0)
 
 
+@pytest.mark.some(10)
 def test_its_module_is_the_same_text_again(model):
     text = numpy_module(lower(derive(model), "verdict"))
     assert text == numpy_module(lower(derive(parse(model.to_toml())), "verdict"))
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(4)
 def test_it_runs(model):
     run = simulate(model, duration=1e-3, rtol=1e-9)
     gross = np.abs(run.energy).max()

@@ -203,7 +203,7 @@ def by_events(times, given, stiff, limit):
     return np.array(found)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("rtol", [1e-4, 1e-8])
 @pytest.mark.parametrize("name", ["mass", "coil"])
 def test_a_mass_and_a_coil_follow_their_events(name, rtol):

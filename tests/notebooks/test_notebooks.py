@@ -17,9 +17,10 @@ ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "notebooks"
 EXECUTE = FOLDER / "execute.py"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
-#: Not executed in the fast tier: what they show has tests of its own, the claims and figures of the
-#: paper, banks beside NumPy, sweeps beside single runs, devices beside closed forms.
+#: Not executed in the fast tier: what they show has tests of its own: derivations, the claims and
+#: figures of the paper, banks beside NumPy, sweeps beside single runs, devices beside closed forms.
 LONG = {
+    "01-framework",
     "03-proofs",
     "04-figures",
     "05-many-hysterons",

@@ -227,7 +227,7 @@ def test_all_of_these_powers_lack_a_value_somewhere():
     assert [case for case in VALUELESS if not has_no_value(*case)] == []
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("case", VALUELESS, ids=lambda case: f"({case[0]})**({case[1]}), {case[2]}")
 def test_no_power_without_a_value_is_proved_to_have_one(case):
     base, exponent, domain = case

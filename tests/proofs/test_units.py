@@ -147,7 +147,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.some(12)
+@pytest.mark.some(6)
 @pytest.mark.parametrize(("edit", "expected"), [(e, r) for e, *r in FAULTS.values()], ids=FAULTS)
 def test_a_fault_names_place_term_unit_need_and_remedy(edit, expected):
     assert reasons(edit) == expected
@@ -222,7 +222,7 @@ def factors():
         yield pytest.param(*pair, marks=[pytest.mark.long] if n % 7 else [])
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(2)
 @pytest.mark.parametrize(("name", "factor"), [*factors()])
 def test_any_other_unit_of_a_parameter_or_input_is_refuted(name, factor):
     """Without exception: piezo_stack has no parameter or input whose unit cannot matter."""

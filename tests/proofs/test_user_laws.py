@@ -43,6 +43,7 @@ def rows(law, assumed=ASSUMED):
     return {(r.id, r.element): r for r in decide(derive(parse(text))).rows}
 
 
+@pytest.mark.some(5)
 @pytest.mark.parametrize("law", CONTINUOUS)
 def test_a_continuous_law_is_proved(law):
     found = rows(law)

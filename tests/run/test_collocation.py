@@ -68,7 +68,7 @@ def test_a_short_step_goes_where_the_rates_lead(spec, stages):
     assert error <= 1e-13 * np.abs(x).max() + (1e-6 if stages == 1 else 1e-9) * moved_by
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(3)
 @pytest.mark.parametrize(
     "spec", [s for s in ALL if Path(s).stem != "dry_friction"], ids=lambda spec: Path(spec).stem
 )
@@ -91,7 +91,7 @@ def ends(spec, duration, counts, stages, options):
         yield steps.x
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("stages", [pytest.param(1, marks=pytest.mark.long), 2, 3])
 @pytest.mark.parametrize(
     ("spec", "duration", "count", "options"), SMOOTH, ids=[Path(row[0]).stem for row in SMOOTH]

@@ -95,7 +95,7 @@ def errors(chain):
         yield parts.max() / rtol, found.attrs["accepted_steps"]
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("chain", CHAINS)
 def test_the_error_of_a_run_is_about_rtol(chain):
     found = [error for error, _ in errors(CHAINS[chain])]

@@ -73,6 +73,7 @@ def test_entropy_is_what_was_made_and_what_came_in(how):
     assert np.abs(found.entropy_exchanged_ambient.values).max() > 1e-3
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("times", [20_001, 200_001])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5])
 def test_production_never_falls_between_close_samples(rtol, times):
@@ -90,6 +91,7 @@ def test_production_never_falls_between_close_samples(rtol, times):
         assert np.array_equal(every[-1], few[name].values[-1])  # runs do not go by samples
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("spec", "rtol", "duration"), [("dry_friction", 0.1, 1.0), ("tables", 1e-6, 0.01)]
 )
@@ -121,6 +123,7 @@ def test_bodies_in_contact_exchange_nothing_with_others():
     assert np.abs(found.entropy_residual.values).max() <= 1e-14 * float(found.entropy[-1])
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("h", [1e-5, 1e-6])
 def test_a_million_steps_close_the_energy_balance(h):
     options = {"inputs": {"V_in": sine(100, 100)}, "times": 1001}

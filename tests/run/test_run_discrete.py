@@ -65,7 +65,7 @@ def test_extrapolation_is_of_fourth_order_where_laws_are_smooth():
     assert 12 < last[0] / last[1] < 20
 
 
-@pytest.mark.some(5)
+@pytest.mark.some(3)
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_every_network_runs_and_closes_both_balances(path):
     model = load(path)

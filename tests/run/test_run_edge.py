@@ -95,6 +95,7 @@ def leak(tmp_path_factory):
     return path
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("way", [{}, {"rtol": 1e-8}, {"step": 0.5}, {"step": 1e-3}])
 def test_a_state_that_leaves_the_domain_is_said_with_time_and_value(leak, way):
     """C dT/dt = lam (T_e - T): the time is known in closed form."""

@@ -127,7 +127,7 @@ def exact(text, **options):
     return simulate(model_of(text), method="Radau", rtol=1e-10, times=101, **options)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("width", [1e-3, 1e-4])
 @pytest.mark.parametrize("options", SLIDES.values(), ids=SLIDES)
 def test_friction_is_as_good_as_asked_for(options, width):
@@ -153,7 +153,7 @@ def test_diodes_that_a_long_step_carries_beyond_their_bend_come_back():
     assert simulate(model_of(DIODES), step=1e-5, **TURNED).attrs["halvings"] < 1000
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("size", [2e-3, 1e-6, 1e-9])
 def test_a_small_body_follows_at_once(size):
     options = {"parameters": {"c_small": size}, "duration": 10.0}

@@ -138,12 +138,14 @@ BROKEN = [
 ]
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(("text", "words"), BROKEN)
 def test_a_broken_compiler_is_one_line(module, no_compiler, monkeypatch, text, words):
     monkeypatch.setenv("CC", str(write_script(no_compiler / "mine", text)))
     assert words in warned(module)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("chosen", ["/bin/false", "no-such-compiler", "'", "/"])
 @pytest.mark.usefixtures("no_compiler")
 def test_a_choice_that_is_no_compiler_is_one_line(module, monkeypatch, chosen):

@@ -151,7 +151,7 @@ def lossy(model):
     return bool(kinds & STORES) and "thermal_mass" in kinds
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("path", [p for p in SPECS if lossy(load(p))], ids=lambda path: path.stem)
 @pytest.mark.parametrize("h", [1e-6, 1e-4])
 def test_every_network_closes_both_balances_after_a_jump(path, h):
@@ -261,6 +261,7 @@ def test_nor_does_a_charge_whose_source_stops_in_vectors():
     assert np.all(np.abs(found.energy_residual) <= 1e-14 * found.energy.max("time"))
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize("rtol", [1e-5, 1e-9])
 @pytest.mark.parametrize("duration", [0.5, 10.0, 1e4])
 def test_a_model_at_rest_is_not_resolved_below_round_off(duration, rtol):

@@ -50,7 +50,7 @@ class Members:
         return collocate(*given, stages=stages, side_by_side=together)
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 @pytest.mark.parametrize("how", [{"rtol": 1e-6}, {"length": 1e-5}], ids=["rtol", "step"])
 def test_lanes_compute_what_members_alone_do(path, how):
@@ -163,7 +163,7 @@ def compiles(folder, cases):
     write_script(folder / "cc", f"PATH={os.defpath}; export PATH; {says}")
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("stages", [2, 3, 4, 5])
 def test_stages_in_vectors_compute_what_stages_one_by_one_do(stages, request):
     members = Members(load("piezo_stack"), size=1, duration=0.02, inputs={"V_in": sine(100, 100)})

@@ -53,6 +53,7 @@ def test_means_are_exact_for_polynomials(stages):
         assert mean[i] @ (reach @ rates) ** 2 == pytest.approx(whole(1) / b[i], abs=1e-9)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("stages", [1, 2, 3, 4, 5])
 def test_blocks_are_those_of_the_matrix(stages):
     t = tables(stages, stages + 2)

@@ -153,7 +153,7 @@ def placed():
             yield pytest.param(LAWS[law], PLACES[place], id=f"{law}-{place}", marks=marks)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.usefixtures("_hurried")
 @pytest.mark.parametrize(("law", "place"), list(placed()))
 def test_what_is_accepted_does_not_hang_later(law, place):

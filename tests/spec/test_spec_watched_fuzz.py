@@ -76,7 +76,7 @@ FAULTY = {
 }
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(("read", "event"), FAULTY.values(), ids=FAULTY)
 def test_what_a_text_may_not_do_is_seen(read, event, tmp_path):
     """The watch itself works: each forbidden deed is noted, in a process of its own."""

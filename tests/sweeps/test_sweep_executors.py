@@ -204,7 +204,7 @@ sweep("piezo_stack", over=over, inputs={{"V_in": sine(100, 100)}}, duration={dur
 @pytest.mark.parametrize(
     ("duration", "method", "threads"),
     [
-        (0.1, "discrete_gradient", 2),
+        (0.03, "discrete_gradient", 2),
         (10.0, "discrete_gradient", 2),
         pytest.param(10.0, "discrete_gradient", 1, marks=pytest.mark.long),
         (10.0, "LSODA", 2),

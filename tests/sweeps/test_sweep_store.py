@@ -52,7 +52,7 @@ def thirds(run):
 REDUCTIONS = [None, "last", "mean", thirds]
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("reduce", REDUCTIONS)
 def test_a_store_holds_what_memory_would(tmp_path, reduce):
     found = sweep("piezo_stack", **BASE, reduce=reduce, store=tmp_path / "runs.zarr")
@@ -63,7 +63,7 @@ def test_a_store_holds_what_memory_would(tmp_path, reduce):
     assert memory.attrs.items() <= found.attrs.items()
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("reduce", [None, "last", thirds])
 def test_a_sweep_goes_on_where_it_was_stopped(tmp_path, reduce, monkeypatch):
     options = {**BASE, "reduce": reduce, "store": tmp_path / "runs.zarr"}
@@ -135,7 +135,7 @@ OTHERS = [
 ]
 
 
-@pytest.mark.some(6)
+@pytest.mark.some(3)
 @pytest.mark.parametrize(("change", "told"), OTHERS, ids=[next(iter(one)) for one, _ in OTHERS])
 def test_the_store_of_another_sweep_is_refused_in_one_line(tmp_path, change, told):
     path = tmp_path / "runs.zarr"
@@ -298,6 +298,7 @@ def mark(path):
     group.attrs["sweep_fingerprint"] = MARK
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("values", [[1e-3, 2e-3], {"a": 1e-3, "b": (1e-3, 2e-3)}])
 def test_a_stored_sweep_is_written_to_netcdf_like_one_in_memory(tmp_path, values):
     how = {"over": {"L": values}, "duration": 1e-3, "times": 3}

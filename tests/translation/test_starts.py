@@ -141,7 +141,7 @@ WRONG = {
 }
 
 
-@pytest.mark.some(12)
+@pytest.mark.some(5)
 @pytest.mark.parametrize(
     ("language", "old", "new"), [(name, *case) for name, cases in WRONG.items() for case in cases]
 )

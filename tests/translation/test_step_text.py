@@ -164,6 +164,7 @@ def row(made, old, new):
     return next(iter(different("step", text, known)), None)
 
 
+@pytest.mark.some(13)
 @pytest.mark.parametrize("case", WRONG)
 def test_a_wrong_stage_is_refuted(made, case):
     found = row(made, *WRONG[case])
@@ -207,6 +208,7 @@ LAWS = {
 }
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("law", LAWS)
 def test_laws_that_choose_are_proved_and_no_switch_can_be_left_out(law):
     words = spec_of(f"{LAWS[law]} | d > 0; a > 0 | a=1.0")

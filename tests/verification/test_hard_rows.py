@@ -137,6 +137,7 @@ def test_a_row_is_proved_by_its_message_alone(found):
     assert {row.points > 0 for row in proved if row.id in ATTACKED} == {True}
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("row", [("temperature", "body"), DAMPER, ("program", "")])
 def test_a_row_that_comes_last_has_the_same_verdict(found, row):
     wanted = verdicts(examined(found))
