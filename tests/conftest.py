@@ -16,13 +16,23 @@ import pytest
 from hypothesis import settings
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
-settings.load_profile("repeatable")
+settings.register_profile("quick", settings.get_profile("repeatable"), max_examples=40)
 
 # Modules and tests stay: to look for garbage among them as often as Python does takes long.
 gc.set_threshold(50_000, 20, 20)
 
 # Where pytest runs in the background of a shell, SIGINT is ignored, by all that tests start, too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def is_quick(config):
+    """Return whether the fast tier runs, and nothing else."""
+    return config.option.markexpr == "not long"
+
+
+def pytest_configure(config):
+    """Draw fewer examples in the fast tier."""
+    settings.load_profile("quick" if is_quick(config) else "repeatable")
 
 
 @pytest.hookimpl(tryfirst=True)  # before `-m "not long"` looks at marks
@@ -106,8 +116,7 @@ def _quick_compiler(request, shared_folder):
 
     Networks as for a user: `test_run_compilers.py`, and all tests with ``-m "long or not long"``.
     """
-    quick = request.config.option.markexpr == "not long"
-    flags = ("-O0", "-O1") if quick else ("", "")
+    flags = ("-O0", "-O1") if is_quick(request.config) else ("", "")
     write_compiler(shared_folder / "quick", "cc", shared_folder, *flags)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PATH", f"{shared_folder / 'quick'}{os.pathsep}{os.environ['PATH']}")

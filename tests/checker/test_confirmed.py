@@ -19,6 +19,7 @@ SOME = {
 }
 
 
+@pytest.mark.long  # `verify --recheck` asks the program, too
 def test_the_shipped_spec_is_confirmed_by_the_program_itself(tmp_path):
     code, out, _ = run(tmp_path, PIEZO_STACK, stated(PIEZO_STACK))
     *lines, last = out.splitlines()

@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from piezo_sym import generate
@@ -129,7 +129,6 @@ def plain(node):
     return inner
 
 
-@settings(max_examples=200, deadline=None)
 @given(sums, terms, st.sampled_from("xyw"))
 def test_a_sharp_tree_is_the_same_function(total, factor, letter):
     """Sums in which a term comes with and without an exponential, among others."""

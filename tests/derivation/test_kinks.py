@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 import sympy as sp
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 
 from piezo_sym import derive
 from piezo_sym.algebra.symbols import to_sympy
@@ -76,7 +76,7 @@ def test_no_condition_chooses(text):
     assert not any(condition.has(sp.Piecewise) for condition in found)
 
 
-@settings(steady, max_examples=30)
+@steady
 @given(laws(exponents=(2, 3)).filter(lambda tree: set(names(tree)) == set("xyw")))
 def test_random_laws_have_their_values(tree):
     for point in POINTS[::4]:

@@ -84,7 +84,7 @@ ANY = st.builds(
 MORE = st.lists(st.tuples(st.lists(ANY, max_size=4), st.sets(st.sampled_from(NAMES), max_size=3)))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.lists(ANY, max_size=40), MORE)
 def test_questions_with_one_beginning_need_what_each_alone_needs(domain, questions):
     """Whatever was asked before, and however much the domain has that they do not need."""

@@ -29,7 +29,6 @@ steady = settings(
     deadline=None,
     derandomize=True,
     database=None,
-    max_examples=60,
     suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
 )
 
