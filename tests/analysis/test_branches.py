@@ -45,7 +45,7 @@ def test_steady_states_come_and_go_at_the_jump(found):
 
 def test_points_are_steady_states(found):
     for curve in found.curves:
-        for point in curve[:: len(curve) // 2]:
+        for point in curve[len(curve) // 2], curve[-1]:
             f = point.frequency
             near = point.state.temperature
             (alone,) = periodic_steady_states(

@@ -17,8 +17,8 @@ ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "notebooks"
 EXECUTE = FOLDER / "execute.py"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
-#: Not executed in the fast tier: what they show has tests of its own: derivations, the claims and
-#: figures of the paper, banks beside NumPy, sweeps beside single runs, devices beside closed forms.
+#: Not executed in the fast tier: what they show has tests of its own: derivations, the paper's
+#: claims, banks beside NumPy, speeds, sweeps beside single runs, devices beside closed forms.
 LONG = {
     "01-framework",
     "03-proofs",
@@ -26,6 +26,7 @@ LONG = {
     "05-many-hysterons",
     "06-paper-and-software",
     "07-sweeps",
+    "08-speed",
     "09-devices",
     "10-hysteresis",
 }
