@@ -32,7 +32,7 @@ def beside_own_values(
     """
     given = iphs.model.parameters.keys() | iphs.model.inputs.keys()
     for question in questions:
-        if question.law is None:
+        if question.law is None or question.derived:
             continue
         answer = solver.ask(replace(question, witness=True).query)
         about = {*names(question.original)}

@@ -161,8 +161,8 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
             for given in allowed.get(value, ()):
                 if {given.kind} in _ENOUGH[need.kind] and _covers(given, need):
                     left = left * (field.one - given.path)
-            met = is_zero(left)
-        if not (met or _is_square_sum(value, known.needs, need) or _is_square(value, known, need)):
+            met = is_zero(left) or _is_square(value, known, need)
+        if not met and not _is_square_sum(value, known.needs, need):
             where = "jacobian" if need.derived else "code"
             yield f"{where} needs a value to be {need.kind} that is not shown to be so"
 

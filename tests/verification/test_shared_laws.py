@@ -74,3 +74,16 @@ def test_what_depends_on_the_drive_or_the_state_is_not_refuted_by_parameters_alo
     (row,) = (r for r in decide(derive(parse(text))).rows if r.element == "third" and r.id == WELL)
     assert row.verdict is not Verdict.PROVED
     assert row.witness is None or {"s_0"} < row.witness.keys()
+
+
+def test_an_energy_without_a_value_refutes_no_law():
+    """The integral divides by a; the force k*exp(a*q) has a value at a = 0."""
+    spring = """
+tip = { kind = "mass", at = "x", mass = "c" }
+bend = { kind = "spring", between = ["x", "wall"], force = "n*exp(a*q)", state = "q" }
+"""
+    text = LOOP.format(law="r_1*i", more="") + spring
+    rows = decide(derive(parse(text))).rows
+    (row,) = (r for r in rows if (r.id, r.element) == (WELL, "bend"))
+    assert row.verdict is Verdict.OPEN
+    assert "give it, energy" in row.reason

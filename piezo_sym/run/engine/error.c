@@ -102,7 +102,9 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long 
         const real misfit = further(further(low, high), next);
         const real share = least(size_of(misfit) / most, wide(1.0));
         const real slow = MODEL(slow_part)(low, high, last, before);
-        left[k] = STAGES > 3 ? (real)largest_of(SMOOTH(share), series * slow) : (real)SMOOTH(share);
+        /* beyond a switch a rate at the end may have no value */
+        const real more = chosen(slow == slow, series * slow, zero);
+        left[k] = STAGES > 3 ? (real)largest_of(SMOOTH(share), more) : (real)SMOOTH(share);
         found[k] = gamma * misfit;
     }
 }
