@@ -5,6 +5,7 @@ each name the expression behind it, stated once.
 """
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import final
 
@@ -118,7 +119,9 @@ def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
 
 def _integral(element: str, port: Storage | Body, positive: frozenset[str]) -> Expr:
     """Return the integral of a co-state law over its state; `positive` names are > 0."""
-    energy = antiderivative(port.law, port.state, integral, positive)
+    energy = None
+    with suppress(RecursionError):  # a sum may be split at edges that lead to each other
+        energy = antiderivative(port.law, port.state, integral, positive)
     if energy is None:
         what = f"no integral of the law {quote(spell(port.law))} by {port.state} is found"
         expected = "one of the functions of laws, found by SymPy in 5 s"

@@ -38,3 +38,12 @@ def test_states_that_do_not_fit(states, said):
 @pytest.mark.parametrize(("law", "said"), LAWS.items())
 def test_laws_that_are_no_energy(law, said):
     assert said in refused(SPRING.format(name="spring", law=law))
+
+
+@pytest.mark.long  # ten seconds, as SymPy is asked for many integrals
+def test_a_sum_that_is_split_at_edges_without_end():
+    law = 'force = "k*n*(1 + abs(q)/g)**(n/2) + k*q/g*(max(abs(q) - g, 0)/g)**(n + w)"'
+    text = SPRING.format(name="spring", law=law)
+    more = 'n = { value = 1.5, unit = "1" }\nw = { value = 1.0, unit = "1" }\n'
+    text = text.replace("[domain]\nassume = [", f'{more}[domain]\nassume = ["n >= 1", "w > 0", ')
+    assert "give the energy itself instead" in refused(text)
