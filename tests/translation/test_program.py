@@ -56,6 +56,45 @@ def test_a_derivative_divides_by_the_square_of_what_laws_divide_by():
     assert row.verdict is Verdict.PROVED, row.reason
 
 
+KINK_AT_SUMS = """
+[model]
+name = "kink_at_sums"
+[parameters]
+r = { value = 2.0, unit = "ohm" }
+s = { value = 3.0, unit = "ohm" }
+L = { value = 1.5, unit = "H" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[domain]
+assume = ["r > 0", "s > 0"]
+[elements]
+bent = { kind = "resistor", between = ["gnd", "e"], voltage = "LAW", heats = "b" }
+b = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S_b" }
+[elements.one]
+kind = "hysteron"
+count = 2
+between = ["e", "gnd"]
+inductance = "L"
+voltage = "r*i"
+heats = "b"
+[elements.two]
+kind = "hysteron"
+count = 3
+between = ["gnd", "e"]
+inductance = "L"
+voltage = "s*i"
+heats = "b"
+"""
+
+
+def test_a_kink_where_the_currents_of_two_banks_are_equal():
+    """At the kink neither sum over lanes is zero, but their difference is."""
+    law = "(r*i if i >= 0 else s*i)*(1 + abs(S_b/c))"
+    iphs = derive(parse(KINK_AT_SUMS.replace("LAW", law)))
+    (row,) = rows(iphs, printed(iphs))
+    assert row.verdict is Verdict.PROVED, row.reason
+
+
 def survivors(name, language, sample=None):
     """Return the mutants that are proved, and how many are not, by verdict."""
     iphs = iphs_of(name)
