@@ -211,11 +211,15 @@ class GeneratorField:
                 terms[mono] = terms[mono] + c if mono in terms else c
         return Value(self, terms)
 
-    def times(self, left: Value, right: Value) -> Value:
-        """Return a product, in normal form."""
-        self.work += len(left.terms) * len(right.terms)
+    def spend(self, work: int) -> None:
+        """Count work, in products of two terms; raise `NotShownError` if it is too much."""
+        self.work += work
         if self.work > MOST_WORK:
             raise NotShownError("the expressions are too large")
+
+    def times(self, left: Value, right: Value) -> Value:
+        """Return a product, in normal form."""
+        self.spend(len(left.terms) * len(right.terms))
         terms: dict[Mono, Exponent] = {}
         more = []
         for m, a in left.terms.items():

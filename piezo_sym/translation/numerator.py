@@ -15,8 +15,9 @@ from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.signs import has_sign
 
 MOST_TERMS = 200_000
-#: Number of terms that a product of two polynomials may have before equal ones are joined.
-MOST_PRODUCTS = 20_000_000
+#: Beside a product of two terms in `GeneratorField`: one in FLINT is so many times faster, and a
+#: term given to FLINT so many times slower.
+FASTER, SLOWER = 10, 10
 
 
 class _Roots:
@@ -31,7 +32,8 @@ class _Roots:
     """
 
     def __init__(self, *values: Value) -> None:
-        self.gens = values[0].field.gens
+        self.field = values[0].field
+        self.gens = self.field.gens
         self.order = sorted(frozenset[int]().union(*(value.parts for value in values)))
         self.place = {g: n for n, g in enumerate(self.order)}
         self.whole = dict.fromkeys(self.order, 1)
@@ -43,6 +45,7 @@ class _Roots:
 
     def of(self, value: Value) -> tuple[fmpq_mpoly, fmpq_mpoly]:
         """Return a polynomial and a monomial whose ratio is the value, powers being variables."""
+        self.field.spend(SLOWER * len(value.terms))
         least = [0] * len(self.order)
         rows = []
         for mono, c in value.terms.items():
@@ -71,9 +74,16 @@ class _Roots:
             value -= part * y**k
             part *= y ** (k % whole) * below ** (most - k // whole)
             for _ in range(k // whole):
-                part = _product(part, above)
+                part = self._product(part, above)
             made += part
         return made + value * below**most
+
+    def _product(self, left: fmpq_mpoly, right: fmpq_mpoly) -> fmpq_mpoly:
+        self.field.spend(len(left) * len(right) // FASTER)
+        made = left * right
+        if len(made) > MOST_TERMS:
+            raise NotShownError("the expressions are too large")
+        return made
 
     def numerator(self, value: Value, kinds: Collection[str]) -> fmpq_mpoly:
         """Return a value times its denominators, generators of some kinds written out."""
@@ -127,12 +137,3 @@ def divisors(value: Value) -> list[Value]:
             found |= {g: None} if e < 0 else {}
             left += [arg] if arg and gens[g].kind in {"power", "letter"} else []
     return [value.field.raised(g, 1) for g in sorted(found)]
-
-
-def _product(left: fmpq_mpoly, right: fmpq_mpoly) -> fmpq_mpoly:
-    if len(left) * len(right) > MOST_PRODUCTS:
-        raise NotShownError("the expressions are too large")
-    made = left * right
-    if len(made) > MOST_TERMS:
-        raise NotShownError("the expressions are too large")
-    return made

@@ -37,7 +37,7 @@ POINTS = 2
 #: Points of the attack on proofs, and of how many networks one is attacked: it takes half the time.
 FEW, ATTACKED = 2_000, 4
 #: What reading back may take: seconds.
-WORK = 300_000
+WORK = 1_000_000
 
 
 def check(spec, seed=0):

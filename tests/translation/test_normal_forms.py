@@ -4,11 +4,13 @@ import ast
 import math
 from fractions import Fraction
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from piezo_sym.translation import field as translation_field
 from piezo_sym.translation.change import put, spelled
 from piezo_sym.translation.expressions import PLAIN, Expressions
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
@@ -167,3 +169,12 @@ def test_a_power_of_what_a_name_stands_for_is_worked_out_once():
     one = field.whole_power(long, 3)
     assert found == field.total(name * one for name in names)
     assert field.work < 4 * len(names) * len(one.terms)
+
+
+def test_questions_of_zero_end_however_many_cases_a_row_has():
+    """Work on numerators counts like that on values: a row with many cases is too large."""
+    field, read = reader()
+    value = read(ast.parse("sqrt(a + x)*(1 + x*y)**3/(a + b)", mode="eval").body)[0]
+    limit = patch.object(translation_field, "MOST_WORK", field.work + 1_000)
+    with limit, pytest.raises(NotShownError, match="too large"):
+        assert not any(vanishes(value) for _ in range(1_000))
