@@ -137,10 +137,9 @@ def _narrowed(
 
 
 def _watched(claim: Claim, at: Point) -> list[Any]:
-    """Return the values of a claim's law; of a store's law, all rates, which jump with it."""
-    kinds = [(what, claim.element) for what in ("output", "temperature", "conductance")]
-    own = [at.probe.laws[key] for key in kinds if key in at.probe.laws]
-    return at.values(own[:1] or [r for n, r in at.probe.defined.items() if n.startswith("rate ")])
+    """Return the values of a claim's laws: laws of others may jump on purpose at the same place."""
+    laws = at.probe.laws
+    return at.values([laws[what, claim.element] for what in at.probe.kinds[claim.element]])
 
 
 def _gap(one: Values, other: Values) -> Any:

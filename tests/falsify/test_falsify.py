@@ -194,6 +194,17 @@ def test_a_power_with_a_small_exponent_is_no_jump_and_a_jump_beside_a_large_one_
         attacked(built(tmp_path, damper(f"{law} + F_1*sign(v)"), *SMALL[:2]), row)
 
 
+def test_a_jump_of_a_store_is_told_from_one_of_a_law_beside_it(tmp_path):
+    """A damper that jumps on purpose where the mass has a kink makes all rates jump there."""
+    beside = damper("F_1*sign(v)") + "discontinuous = true\n"
+    kink = beside.replace('mass = "M"', 'velocity = "p/M if p < 0 else 2*p/M"')
+    jump = beside.replace('mass = "M"', 'velocity = "p/M if p < M*v_1 else 2*p/M"')
+    (attack,) = attacked(built(tmp_path, kink, "F_1 > 0"), ("continuous", "mass"))
+    assert attack.points >= 20_000
+    with pytest.raises(ContradictionError, match="its values differ by"):
+        attacked(built(tmp_path, jump, "F_1 > 0"), ("continuous", "mass"))
+
+
 def test_a_power_that_overflows_where_the_law_is_zero_is_no_rounding(tmp_path):
     iphs = built(tmp_path, damper("a*v*abs(b/a_1)**n"), "a > 0", "a_1 > 0", "n > 0", n=1.5)
     (attack,) = attacked(iphs, PASSIVE, points=100_000)
