@@ -30,7 +30,7 @@ STORE = ".zarr"
 ENDINGS = (".nc", ".csv", STORE)
 METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
 LSODA."""
-ORDER = "With --step: its order, 2 (if left out), 4, 6, 8 or 10."
+ORDER = "With --step: its order, 2 (if left out), 4, 6, 8, 10 or 12."
 TIMES = "Number of samples; 1001, or ends of steps, if left out."
 EVENTS = "NAME=EXPRESSION, located where its sign changes; repeat."
 STOP = "A comparison, such as 'T_body > 350', that ends the run."

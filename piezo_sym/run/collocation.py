@@ -34,13 +34,13 @@ CHUNK = 50_000
 MOST_STATES = 32
 #: Least rtol; the cheapest number of stages; the estimated error allowed in a step, over rtol, with
 #: which the largest error of a run is about rtol.
-STAGES = ((1e-5, 4, 0.3), (0.0, 5, 0.75))
+STAGES = ((3e-6, 4, 0.3), (0.0, 6, 0.75))
 #: Below this tolerance steps end at kinks, however many there are.
 LEAST_OVER = 1e-6
 #: A run of more steps would take days, and steps below round-off.
 MOST_STEPS = 1e12
 #: Twice the stages that a step can have.
-ORDERS = (2, 4, 6, 8, 10)
+ORDERS = (2, 4, 6, 8, 10, 12)
 #: A step that ends closer than this, over its length, to a sample or a break ends there.
 ROUNDING = 1e-9
 #: The least error that is estimated, over the noise of a state at rest.
@@ -126,17 +126,26 @@ def collocate(
         if starts:
             advance_from_jumps(batch, how, first.inputs, times, watch)
         elif not how.fixed:
-            batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
-            batch.largest[:] = first.scale(batch.largest)
-            for n in np.flatnonzero(np.any(batch.largest < QUIET, axis=1)).tolist():
-                batch.noise[n] = systems[n].noise(x[n])
-            least = first.scale(OVER_NOISE * batch.noise / how.tolerance)
-            batch.largest[:] = np.maximum(batch.largest, least)
+            set_scales(batch, systems, x, how.tolerance)
         advance(batch, watch)
     except KeyboardInterrupt as stopped:
         vars(stopped)["reached"] = results_of(batch, systems, x, times).so_far(0).until(times)
         raise
     return results_of(batch, systems, x, times)
+
+
+def set_scales(
+    batch: Batch, systems: Sequence[DrivenModule], x: FloatArray, tolerance: float
+) -> None:
+    """Set the scale of each state of runs from x (runs, n), by a coarse run."""
+    first = systems[0]
+    batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
+    batch.largest[:] = first.scale(batch.largest)
+    for n in np.flatnonzero(np.any(batch.largest < QUIET, axis=1)).tolist():
+        batch.noise[n] = systems[n].noise(x[n])
+    if np.any(batch.noise):
+        least = first.scale(OVER_NOISE * batch.noise / tolerance)
+        batch.largest[:] = np.maximum(batch.largest, least)
 
 
 def advance_from_jumps(

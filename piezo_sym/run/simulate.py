@@ -98,7 +98,7 @@ def simulate(
     step : a fixed step [s] instead of rtol, for the discrete gradient alone. Steps end at samples,
         at breaks of inputs and at the end of the run; between two of these they are equal, and
         no longer than this.
-    order : 2, 4, 6, 8 or 10, with `step` alone; 2 when left out.
+    order : 2, 4, 6, 8, 10 or 12, with `step` alone; 2 when left out.
     parameters : name -> number, for a bank's parameter also a list of one number per lane; and
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number per lane, SI units; a

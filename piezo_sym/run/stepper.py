@@ -62,7 +62,7 @@ class Stepper:
     ----------
     module : a generated module; `piezo_sym.Stepper` takes a model, a name or a path.
     step : length of a step [s]; a step that fails is halved.
-    order : 2, 4, 6, 8 or 10: the order of the error in the step, where all is smooth.
+    order : 2, 4, 6, 8, 10 or 12: the order of the error in the step, where all is smooth.
     parameters, initial, inputs : name -> number, as for `simulate`, `<bank>_count` and `T_<body>`
         among them; `inputs` are those at t = 0, numbers only. A list of parameters makes as many
         plants: each array has a last axis for them.

@@ -37,8 +37,9 @@ class DrivenModule:
     def scale(self, x: FloatArray) -> FloatArray:
         """Return magnitudes of x (*batch, n), at least `FLOOR`; of lanes, that of the largest."""
         scale = np.maximum(np.abs(x), FLOOR)
-        for row in self.rows(self.module.STATES):
-            scale[..., row] = np.max(scale[..., row], axis=-1, keepdims=True)
+        for record, row in zip(self.module.STATES, self.rows(self.module.STATES), strict=True):
+            if record.bank:
+                scale[..., row] = np.max(scale[..., row], axis=-1, keepdims=True)
         return scale
 
     def noise(self, x: FloatArray) -> FloatArray:

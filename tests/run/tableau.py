@@ -19,7 +19,7 @@ mp = mpmath.mp.clone()
 mp.dps = DIGITS
 _ALONE = Lock()
 #: By what an even number of stages sees its error estimates: near the eigenvalues' real parts.
-EVEN = "0.15"
+EVEN = {2: "0.15", 4: "0.15", 6: "0.1"}
 #: Nodes of means where the nodes of a step are too few, and what these may leave out of a mean.
 FINE, LEFT_OUT = 16, "1e-15"
 #: Between two places where switching functions are known they are looked at in so many parts.
@@ -65,7 +65,7 @@ def tableau(stages: int, nodes: int, *, lossy: bool = False, lanes: int = 0) -> 
             tables |= {name: [[mp.mpf(1)]] for name in ("stage_reach", "node_reach", "node_mean")}
             tables["eigenvalue"] = values = [[mp.mpf(1), mp.mpf(0)]]
         # the real eigenvalue, where there is one: the estimate of errors needs a real factor
-        filters = [mp.re(values[0][0]) if stages % 2 else mp.mpf(EVEN)]
+        filters = [mp.re(values[0][0]) if stages % 2 else mp.mpf(EVEN[stages])]
         sizes = {"STAGES": stages, "NODES": nodes, "PAIRS": stages // 2, "PARTS": PARTS}
         sizes |= {"FINE": FINE, "LOSSY": int(lossy)}
         head = [f"#define {name} {value}" for name, value in sizes.items()]
@@ -211,7 +211,7 @@ def _numbers(values: list[Any]) -> str:
 def files():
     """Return the arguments of the tables in each file, by its name."""
     found = {}
-    for stages in range(1, 6):
+    for stages in range(1, 7):
         lanes, nodes = 1 << (stages - 1).bit_length(), stages + 2
         found[f"{stages}_{stages}"] = stages, stages, {}
         found[f"{stages}_{nodes}"] = stages, nodes, {}

@@ -3,6 +3,7 @@
 References are SciPy's Radau at 1e-13, and for case P the state that three solvers agree on.
 """
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from piezo_sym import load, simulate, sine
 from piezo_sym.modules import module_of
 from piezo_sym.run import simulate as run
+from piezo_sym.run.collocation import ORDERS
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 CASE_P = {"inputs": {"V_in": sine(100, 100)}, "duration": 0.1}
@@ -63,6 +65,16 @@ def test_orders_of_smooth_systems(spec, duration, longest, options):
         )
         errors = [np.linalg.norm((x - wanted) / size) for x in found]
         assert np.all(np.abs(orders(errors) - order) <= off)
+
+
+def test_each_order_is_nearer_than_the_one_before():
+    spec, duration, _, _ = SMOOTH[1]
+    model, module = load(spec), module_of(load(spec))
+    options = {"duration": duration, "times": 2}
+    wanted = at_the_end(module, simulate(model, rtol=1e-13, **options))
+    found = (simulate(model, step=duration / 4, order=order, **options) for order in ORDERS)
+    errors = [np.linalg.norm(at_the_end(module, x) - wanted) for x in found]
+    assert all(more > 5 * less for more, less in pairwise(errors))
 
 
 def error_of_pair(module, finer):

@@ -8,6 +8,7 @@ import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from math import nan
 from typing import Any, Literal, final
 
 import numpy as np
@@ -29,7 +30,7 @@ ALIGNED = 64
 class Stepping:
     """The options of steps."""
 
-    stages: int  # of a step, 1 to 5; its order is twice that
+    stages: int  # of a step, 1 to 6; its order is twice that
     #: Of the estimate of a step's error, in scales of the states; not used with `fixed`.
     tolerance: float
     #: first, longest: the length of the first step, and of the longest [s].
@@ -93,25 +94,35 @@ class Batch:
         extra: int = 0,
     ) -> None:
         self._engine, self._layout, self.extra = engine, layout, extra
-        self._structures = engine.structure.many(parameters)
-        self.x, self.largest = np.array(x, dtype=float), np.abs(x)
-        self.noise = np.zeros(self.x.shape)
-        self.inputs = InputRecords(inputs)
+        one = len(parameters) == 1
+        self._structures = (
+            engine.structure(*parameters) if one else engine.structure.many(parameters)
+        )
+        self.inputs, self._end = InputRecords(inputs), inputs.end
         self._times = np.ascontiguousarray(times, dtype=float)
-        count, n = self.x.shape
-        self._runs = (c_record("run") * count)()
-        self.records: Any = np.frombuffer(memoryview(self._runs), record_dtype("run"))
-        self.records["p"] = self._structures.addresses
-        self.records["t"] = inputs.start
+        self.records: Any = np.zeros(len(x), record_dtype("run"))
         self._load(stepping)
         rows = self.sizes()[3] + extra
-        self.states = np.full((count, times.size, n), np.nan)
-        self.sums = np.full((count, times.size, rows), np.nan)
-        self.ledgers = np.zeros((count, 2, rows))
-        for name in ("x", "largest", "noise", "states", "sums"):
-            self.records[name] = addresses(getattr(self, name))
-        self.records["ledger"] = addresses(self.ledgers)
-        self.go_on(stepping, inputs.end)
+        self.x: FloatArray = np.empty(x.shape)
+        self.largest, self.noise = np.empty(x.shape), np.empty(x.shape)
+        self.states = np.empty((len(x), times.size, x.shape[1]))
+        self.sums = np.empty((len(x), times.size, rows))
+        self.ledgers = np.empty((len(x), 2, rows))
+        fields = {"ledger": self.ledgers}
+        fields |= {n: getattr(self, n) for n in ("x", "largest", "noise", "states", "sums")}
+        self._fixed: dict[str, Any] = {name: addresses(array) for name, array in fields.items()}
+        self._fixed |= {"p": self._structures.addresses, "t": inputs.start}
+        self.begin(x, stepping)
+
+    def begin(self, x: FloatArray, stepping: Stepping) -> None:
+        """Prepare runs that begin at the states x (runs, n), whatever has been run before."""
+        self.x[:], self.largest[:] = x, np.abs(x)
+        self.noise[:] = self.ledgers[:] = 0
+        self.states[:] = self.sums[:] = nan
+        self.records.fill(0)
+        for name, value in self._fixed.items():
+            self.records[name] = value
+        self.go_on(stepping, self._end)
 
     def go_on(self, stepping: Stepping, stop: float) -> None:
         """Prepare runs to continue until `stop` [s], except for failed ones.
@@ -123,9 +134,9 @@ class Batch:
         self.records["segments"] = self.inputs.address(t)
         over = bool(stepping.fixed > 0)
         task = c_record("task")(
-            runs=ctypes.addressof(self._runs),
+            runs=self.run,
             times=at(self._times),
-            count=len(self._runs),
+            count=len(self.records),
             samples=self._times.size,
             over_kinks=over,
             either=stepping.kinks == "either" and not over,
@@ -157,7 +168,7 @@ class Batch:
     @property
     def run(self) -> int:
         """The address of the first run."""
-        return ctypes.addressof(self._runs)
+        return int(self.records.ctypes.data)
 
     def function(self, name: str) -> Any:
         """Return the C function MODEL(name)."""

@@ -7,6 +7,7 @@
 typedef struct {
     real h, behind, slope;
     mask busy, sampling, steps, known; /* lanes with a step; for samples; others; with a prediction */
+    mask planned;                      /* steps whose length their errors decide */
     mask resumed;                      /* whose step begins at the last sample */
     mask found, good;                  /* whose step has rates; and lies in the domain */
     mask search, switched;             /* where a switch has to be located; and a step may be cut */
@@ -28,7 +29,8 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
         SET(t.busy, lane, 1);
         SET(t.sampling, lane, l->phase == SAMPLE || l->phase == RESUME);
         SET(t.resumed, lane, l->phase == RESUME);
-        SET(b->m.sketch, lane, l->phase == STEP && b->fixed == 0.0 && !l->settled);
+        SET(t.planned, lane, l->phase == STEP && b->fixed == 0.0);
+        SET(b->m.sketch, lane, IN(t.planned, lane) && !l->settled);
         SET(t.known, lane, l->known > 0.0);
         l->solves += !IN(t.sampling, lane);
         LANE(&t.h, 0, lane) = l->length;
@@ -118,7 +120,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
 /* Refuse steps without rates, or with large errors; of the others tell where switches have changed. */
 static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
-    const real worst = b->fixed == 0.0 ? MODEL(error)(b, t->h) : (real)zero;
+    const real worst = any(t->planned) ? MODEL(error)(b, t->h) : (real)zero;
     const mask across = MODEL(crossed)(b, t->steps & t->found & none_of(b->m.over));
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         MODEL(lane) *l = b->lane + lane;

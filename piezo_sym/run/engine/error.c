@@ -31,6 +31,9 @@
 #elif STAGES == 5
 #define SMOOTH(part) (FALLS(part) + 2e-3 * (part) * sqrt_of(sqrt_of(part)))
 #define PULL(z) ((z) * (z) * (z) * (6.4e-4 / (1.0 + (z)) + 4e-6 * (z) * (z)))
+#elif STAGES == 6
+#define SMOOTH(part) (FALLS(part) + 5e-4 * (part) * sqrt_of(sqrt_of(part)))
+#define PULL(z) ((z) * (z) * (z) * (1.2e-4 / (1.0 + (z)) + 1.5e-7 * (z) * (z) * (z)))
 #else
 #define SMOOTH(part) (part)
 #define PULL(z) (1e-2 * (z) * (z))

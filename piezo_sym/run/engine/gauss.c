@@ -21,16 +21,13 @@
 #define NO_SIZE (sizeof(real) < sizeof(double) ? 1e-30 : 1e-300)
 
 #if PAIRS
-#if PAIRS > 2
-#error "more pairs need another vector"
-#endif
 /*
  * Numbers for pairs of complex eigenvalues: those of one run share a vector, so that their
  * equations are solved side by side.
  */
 #if REAL_WIDTH == 1 && PAIRS > 1 && !defined(PLAIN)
-#define TOGETHER PAIRS
-typedef double pairs __attribute__((vector_size(8 * PAIRS), aligned(8), may_alias));
+#define TOGETHER (PAIRS == 2 ? 2 : 4)
+typedef double pairs __attribute__((vector_size(8 * TOGETHER), aligned(8), may_alias));
 #define PAIR(number, k) (((double *)&(number))[k])
 #define PAIRS_OF(value) ((pairs){0.0} + (value))
 #else

@@ -36,12 +36,15 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define TO_AND_FRO 0.5
 
 #if PAIRS
+/* The pair of lane j of a vector; lanes left over have the last one once more. */
+#define OF_LANE(j) ((j) < PAIRS ? (j) : PAIRS - 1)
+
 /* The step times the eigenvalues of the pairs from `first` on. */
 static inline MODEL(complex) MODEL(gamma)(real h, long first)
 {
     MODEL(complex) gamma;
     for (long j = 0; j < TOGETHER; ++j) {
-        const double *value = eigenvalue[STAGES % 2 + first + j];
+        const double *value = eigenvalue[STAGES % 2 + OF_LANE(first + j)];
         PAIR(gamma.re, j) = h * value[0];
         PAIR(gamma.im, j) = h * value[1];
     }
@@ -59,17 +62,19 @@ static void MODEL(change)(const MODEL(block) *m, real h)
 #if PAIRS
     const long n = m->n, size = MODEL(factor_size_complex)(m);
     for (long first = 0; first < PAIRS; first += TOGETHER) {
-        real *const one = m->gap + (STAGES % 2 + 2 * first) * n;
+        real *const one = m->gap + STAGES % 2 * n;
         for (long k = 0; k < n; ++k)
             for (long j = 0; j < TOGETHER; ++j) {
-                PAIR(m->right[k].re, j) = one[2 * j * n + k];
-                PAIR(m->right[k].im, j) = -one[(2 * j + 1) * n + k];
+                const real *const pair = one + 2 * OF_LANE(first + j) * n + k;
+                PAIR(m->right[k].re, j) = pair[0];
+                PAIR(m->right[k].im, j) = -pair[n];
             }
         MODEL(solve_complex)(m, MODEL(gamma)(h, first), m->slope, m->factor + first * size, m->right);
         for (long k = 0; k < n; ++k)
-            for (long j = 0; j < TOGETHER; ++j) {
-                one[2 * j * n + k] = PAIR(m->right[k].re, j);
-                one[(2 * j + 1) * n + k] = -PAIR(m->right[k].im, j);
+            for (long j = 0; j < TOGETHER && first + j < PAIRS; ++j) {
+                real *const pair = one + 2 * (first + j) * n + k;
+                pair[0] = PAIR(m->right[k].re, j);
+                pair[n] = -PAIR(m->right[k].im, j);
             }
     }
 #endif /* PAIRS */

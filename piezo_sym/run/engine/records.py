@@ -64,8 +64,7 @@ def at(array: NDArray[Any]) -> ctypes.c_void_p:
 
 def addresses(array: NDArray[Any]) -> NDArray[np.uintp]:
     """Return the address of each entry of an array along its first axis."""
-    first, apart = array.ctypes.data, array.strides[0]
-    return (first + apart * np.arange(len(array))).astype(np.uintp)
+    return np.arange(len(array), dtype=np.uintp) * array.strides[0] + array.ctypes.data
 
 
 @final
@@ -95,18 +94,22 @@ class ParameterRecords:
         fields += [(f"count_{n}", LONG) for n, _ in enumerate(module.BANKS)]
         none = [("none", ctypes.c_char)]
         self._kind: Any = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
-        self._cached = lru_cache(maxsize=REMEMBERED)(lambda p: self.many([p]))
+        self._dtype: np.dtype[Any] = np.dtype(self._kind)
+        self._cached = lru_cache(maxsize=REMEMBERED)(lambda p: self._made([p]))
 
     def __call__(self, p: Any) -> Structures:
         """Return the structure of one run."""
         try:
             return self._cached(p)
         except TypeError:  # a list among the values is not hashable
-            return self.many([p])
+            return self._made([p])
 
     def many(self, parameters: Sequence[Any]) -> Structures:
         """Return the structures of runs whose banks have equal sizes."""
-        records: NDArray[Any] = np.zeros(len(parameters), np.dtype(self._kind))
+        return self(*parameters) if len(parameters) == 1 else self._made(parameters)
+
+    def _made(self, parameters: Sequence[Any]) -> Structures:
+        records: NDArray[Any] = np.zeros(len(parameters), self._dtype)
         kept: list[object] = [records]
         for n, record in enumerate(self._module.PARAMETERS):
             values = [getattr(p, record.name) for p in parameters]
