@@ -1049,8 +1049,8 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
  */
 
 /*
- * States are scaled by 1 + ASIDE to estimate the round-off of their co-states; what exceeds it by
- * the factor MUCH_NOISE is no round-off.
+ * States are moved by ASIDE of their scales to estimate the round-off of their co-states; what exceeds
+ * it by the factor MUCH_NOISE is no round-off.
  */
 #define ASIDE 1e-3
 #define MUCH_NOISE 100.0
@@ -1117,17 +1117,21 @@ static mask MODEL(coarse)(const MODEL(block) *m, real h)
 /*
  * The lanes in which FINE nodes are too few: the step is too long. An integrand that tends to zero
  * as a difference of larger terms, such as a length and a rest length, ends as their round-off; how
- * large they are shows when the states are scaled.
+ * large that is shows when the states are moved.
  */
 static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
 {
     real *const noise = m->gap; /* no longer needed by Newton's method */
     MODEL(integrands)(m->x, &m->p, noise);
-    for (long k = 0; k < m->n; ++k)
-        m->reached[k] = m->x[k] * (1.0 + ASIDE);
+    for (long k = 0; k < m->n; ++k) {
+        const real by = ASIDE * (m->largest[k] + size_of(m->x[k]));
+        m->reached[k] = m->x[k] + chosen(m->x[k] < 0.0, -by, by);
+    }
     MODEL(integrands)(m->reached, &m->p, m->node);
-    for (long k = 0; k < m->means; ++k)
-        noise[k] = (NOISE / ASIDE) * size_of(m->node[k] - noise[k]);
+    for (long k = 0; k < m->means; ++k) {
+        const real change = size_of(m->node[k] - noise[k]);
+        noise[k] = chosen(change < 1e300, (NOISE / ASIDE) * change, zero);
+    }
     return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
 

@@ -8,8 +8,9 @@ The derivative of one value by one state is a `_Slope`: `value`, in the lane tha
 between them.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from heapq import heappop, heappush
 from operator import attrgetter
 from typing import final
@@ -25,7 +26,20 @@ from piezo_sym.codegen.program import (
     needed,
 )
 from piezo_sym.expressions.calculus import add, derivative, mul
-from piezo_sym.expressions.tree import ONE, ZERO, Expr, LaneSum, Sym, names, replaced
+from piezo_sym.expressions.grammar import may_vanish
+from piezo_sym.expressions.tree import (
+    ONE,
+    ZERO,
+    Call,
+    Expr,
+    LaneSum,
+    Num,
+    Pow,
+    Sym,
+    names,
+    rebuild,
+    replaced,
+)
 
 
 @final
@@ -61,7 +75,8 @@ def jacobian_of(
     sums: dict[Expr, Sym] = {
         item.value: Sym(item.name) for item in quantities if isinstance(item.value, LaneSum)
     }
-    named, entries = _NamedDerivatives(dict(lanes), sums, known, new, []), list[Entry]()
+    kinked = frozenset(item.name for item in before if may_vanish(item.value))
+    named, entries = _NamedDerivatives(dict(lanes), sums, known, new, kinked, []), list[Entry]()
     for col, state in enumerate(states):
         chain = _Chain(state, named)
         waiting = sorted({n for name in chain.slopes for n in users.get(name, ())})
@@ -77,6 +92,33 @@ def jacobian_of(
     return tuple(sorted(entries, key=attrgetter("row", "col"))), tuple(named.defined)
 
 
+def _slope_of(value: Expr, name: str, kinked: Container[str]) -> Expr:
+    """Return the derivative of a value, with a value where the argument of a root is zero.
+
+    That of ``q*sqrt(abs(q))`` is no 0/0 at rest; that of a root alone is infinite there.
+    """
+    return _as_roots(derivative(_as_powers(value, kinked), name))
+
+
+def _as_powers(node: Expr, kinked: Container[str]) -> Expr:
+    """Return an expression with roots of what may vanish at a kink as powers."""
+    match node:
+        case Call("sqrt", (arg,)) if may_vanish(arg, kinked):
+            return Call("pow", (_as_powers(arg, kinked), Num(Fraction(1, 2))))
+        case Pow(base, exponent) if 0 < exponent < 1 and may_vanish(base, kinked):
+            return Call("pow", (_as_powers(base, kinked), Num(exponent)))
+    return rebuild(node, lambda part: _as_powers(part, kinked))
+
+
+def _as_roots(node: Expr) -> Expr:
+    match node:
+        case Call("pow", (arg, Num(Fraction(numerator=1, denominator=2)))):
+            return Call("sqrt", (_as_roots(arg),))
+        case Call("pow", (base, Num(exponent))):
+            return Pow(_as_roots(base), exponent)
+    return rebuild(node, _as_roots)
+
+
 def _users(values: Iterable[Expr]) -> Mapping[str, list[int]]:
     """Return the numbers of the expressions in which each name occurs."""
     users: dict[str, list[int]] = {}
@@ -89,12 +131,16 @@ def _users(values: Iterable[Expr]) -> Mapping[str, list[int]]:
 @final
 @dataclass(frozen=True)
 class _NamedDerivatives:
-    """The derivatives that get a name; expressions in `sums` and `known` have one already."""
+    """The derivatives that get a name; expressions in `sums` and `known` have one already.
+
+    `kinked` are the names of values with kinks.
+    """
 
     lanes: dict[str, str]
     sums: dict[Expr, Sym]
     known: Mapping[Expr, Sym]
     new: Names
+    kinked: frozenset[str]
     defined: list[Quantity]
 
     def define(self, word: str, value: Expr, bank: str | None, note: str) -> Sym:
@@ -148,7 +194,7 @@ class _Chain:
             slope = self.slopes.get(name)
             if slope is None:
                 continue
-            factor = derivative(value, name)
+            factor = _slope_of(value, name, self.derivatives.kinked)
             if bank and self.state.bank and not self.derivatives.lanes.get(name):
                 outer.append(Outer(factor, slope.value))
             else:

@@ -7,6 +7,7 @@ Numbers are taken from the source text as exact rationals.  Nothing is evaluated
 
 import ast
 import re
+from collections.abc import Container
 from fractions import Fraction
 from functools import cache
 
@@ -227,7 +228,7 @@ LETTERS = frozenset({"i", "v", "f", "T"})
 def _power(base: Expr, exponent: Expr) -> Expr:
     if LETTERS & {*names(exponent)}:
         raise RefusedError("has a power that is not a number", "a small number, as in v**2")
-    if names(exponent) and not isinstance(exponent, Neg) and _may_vanish(base):
+    if names(exponent) and not isinstance(exponent, Neg) and may_vanish(base):
         return Call("pow", (base, exponent))
     if names(exponent):  # the base is positive; log refuses one that has a unit
         return Call("exp", (Mul(exponent, Call("log", (base,))),))
@@ -237,13 +238,18 @@ def _power(base: Expr, exponent: Expr) -> Expr:
     return Pow(base, value)
 
 
-def _may_vanish(base: Expr) -> bool:
-    """Return whether a factor has kinks, as abs(f/f_0), so that the base of a power may be 0."""
+def may_vanish(base: Expr, kinked: Container[str] = ()) -> bool:
+    """Return whether a factor has kinks, as abs(f/f_0), so that the base of a power may be 0.
+
+    `kinked` are names whose values have.
+    """
     match base:
         case Mul(left, right):
-            return _may_vanish(left) or _may_vanish(right)
+            return may_vanish(left, kinked) or may_vanish(right, kinked)
         case Div(left, _):
-            return _may_vanish(left)
+            return may_vanish(left, kinked)
+        case Sym(name):
+            return name in kinked
     chooses = isinstance(base, Call) and not RECORDS[base.function].smooth
     return chooses or isinstance(base, If) or (isinstance(base, Call) and base.function == "pow")
 
