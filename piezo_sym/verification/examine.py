@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 from piezo_sym.codegen.template import template_of
 from piezo_sym.falsify import POINTS, Attack, Hunt, module_from
@@ -29,6 +29,8 @@ ATTACKED = frozenset(
 )
 #: Of the time that is left, a row may take this part before all others are decided.
 SHARE = 0.125
+#: Gives what some work yields, done in turn or `beside` other work.
+Apart: TypeAlias = Callable[[Iterator[Any]], AbstractContextManager[Iterator[Any]]]
 NOTHING: Mapping[int, Any] = MappingProxyType({})
 PROGRAM = Row("program", "", STATEMENT, Verdict.OPEN)
 
@@ -36,7 +38,7 @@ PROGRAM = Row("program", "", STATEMENT, Verdict.OPEN)
 def examine(
     iphs: IPHS,
     points: int = POINTS,
-    apart: Callable[[Iterator[Any]], AbstractContextManager[Iterator[Any]]] = nullcontext,
+    apart: Apart = nullcontext,
     late: Mapping[int, int] = NOTHING,
     known: Mapping[int, Row] = NOTHING,
 ) -> Iterator[Template | Report | Progress]:
@@ -47,19 +49,18 @@ def examine(
     Parameters
     ----------
     points : how many points the attack takes; fewer in tests of many small networks alone.
-    apart : where printed texts are read back: in turn, or `beside` proofs and attacks.
+    apart : where texts are printed and read back: in turn, or `beside` proofs and attacks.
     late, known : how often rows have taken more than their share, and those decided; see `Request`.
     """
-    made = template_of(iphs)
-    yield made
-    texts = made.filled(iphs.model.flatten().model_dump())
-    of_system = apart(_read_back(iphs, texts, (".py", ".c")))
-    of_step = apart(_read_back(iphs, texts, ("_step.c",)))
-    with of_system as system, of_step as step:
-        report = stated(iphs)
+    with apart(_printed(iphs, apart)) as printed:
+        try:
+            report = stated(iphs)
+        finally:  # without it, too, the texts may be wanted
+            yield (made := next(printed))
         report = replace(report, rows=(*report.rows, PROGRAM))
         yield replace(report, obligations=())  # they are sent with their queries, once made
-        work = _Work(iphs, report, texts[".py"], points, (system, step))
+        text = made.filled(iphs.model.flatten().model_dump())[".py"]
+        work = _Work(iphs, report, text, points, printed)
         again = [n for n, times in late.items() if times == 1]
         rest = [n for n in range(len(report.obligations)) if n not in late]
         waiting = {*work.prover.resting(late)}
@@ -90,7 +91,7 @@ class _Work:
     """The rows of a system that is examined."""
 
     def __init__(
-        self, iphs: IPHS, report: Report, text: str, points: int, read: Iterable[Iterator[Row]]
+        self, iphs: IPHS, report: Report, text: str, points: int, read: Iterator[Row]
     ) -> None:
         self.iphs, self.report, self.points, self.read = iphs, report, points, read
         self.prover, self.program = Prover(iphs, report), len(report.rows) - 1
@@ -156,12 +157,15 @@ class _Work:
     def read_back(self, part: float) -> Iterator[Progress]:
         """Decide the row on the printed texts."""
         yield self.begun(self.program, part)
-        self._done[self.program] = worst([next(rows) for rows in self.read])
+        self._done[self.program] = next(self.read)
 
 
-def _read_back(iphs: IPHS, texts: Mapping[str, str], endings: tuple[str, ...]) -> Iterator[Row]:
-    """Yield the row on some of the printed texts."""
-    yield program_row(iphs, texts, endings)
+def _printed(iphs: IPHS, apart: Apart) -> Iterator[Any]:
+    """Yield the texts of a module, then the row on them, read back."""
+    yield (made := template_of(iphs))
+    texts = made.filled(iphs.model.flatten().model_dump())
+    with apart(program_row(iphs, texts, (end,)) for end in ("_step.c",)) as of_step:
+        yield worst([program_row(iphs, texts, (".py", ".c")), next(of_step)])
 
 
 def _attacked(row: Row, attack: Attack | None) -> Row:

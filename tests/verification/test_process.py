@@ -20,7 +20,7 @@ from piezo_sym.spec.load import parse
 from piezo_sym.spec.values import Template
 from piezo_sym.verification import examine, process
 from piezo_sym.verification.process import answer, examined_model, examining, messages
-from piezo_sym.verification.protocol import ENDED, OVERDUE, Progress, Request
+from piezo_sym.verification.protocol import ENDED, OVERDUE, TOO_LARGE, Progress, Request
 from tests.proofs.test_false_proofs import MASS
 
 
@@ -196,6 +196,20 @@ def test_texts_come_before_the_verdicts_on_them():
         template, report = found.template(), found.report()
     assert template == template_of(derive(model))
     assert report.rows == examined_model(model).rows
+
+
+def test_texts_come_also_where_too_much_would_have_to_be_stated(monkeypatch):
+    """They are made in a copy, and can be written as they are."""
+
+    def stated(_):
+        raise MemoryError
+
+    monkeypatch.setattr(process, "FEWEST_BESIDE", 1)
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
+    monkeypatch.setattr(examine, "stated", stated)
+    first, last = answer(Request(load("oscillator"), 60.0))
+    assert first == template_of(derive(load("oscillator")))
+    assert last == TOO_LARGE
 
 
 def test_errors_of_a_report_are_raised_where_it_is_asked_for():
