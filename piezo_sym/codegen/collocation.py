@@ -19,10 +19,11 @@ from piezo_sym.codegen.differences import sharp_quantity
 from piezo_sym.codegen.functions import exchanges_of, heats_of, productions_of, rates_of, supply_of
 from piezo_sym.codegen.jacobian import jacobian_of
 from piezo_sym.codegen.paths import Path, paths_of, slope_quantities, stage_quantities
-from piezo_sym.codegen.program import Entry, Limit, Names, OutputRow, Quantity, needed
+from piezo_sym.codegen.program import Entry, Limit, Names, OutputRow, Quantity
 from piezo_sym.codegen.quantities import COSTATES, Quantities, quantities_of
 from piezo_sym.codegen.switches import Switch, switched_values
 from piezo_sym.expressions.calculus import compared, is_affine
+from piezo_sym.expressions.tree import names
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.elements.ports import Body, Storage
 
@@ -71,9 +72,9 @@ class Collocation:
     paths: tuple[Path, ...] = ()
 
 
-def collocation_of(iphs: IPHS) -> Collocation:
-    """Return the collocation step of a system."""
-    q = quantities_of(iphs)
+def collocation_of(iphs: IPHS, known: Quantities | None = None) -> Collocation:
+    """Return the collocation step of a system, whose quantities may have been found."""
+    q = known or quantities_of(iphs)
     new = Names(q.taken)
     paths = paths_of(q, new)
     q = replace(q, taken=frozenset(new.taken))
@@ -106,8 +107,11 @@ def _stage(q: Quantities, rates: tuple[OutputRow, ...], means: tuple[Quantity, .
     booked = (*supply_of(q), *heats_of(q), *productions_of(q), *exchanges_of(q))
     defined = tuple(item for item in q.defined if item not in means)
     values = switched_values(defined, (*rates, *booked), q.lanes, new, means=means)
-    states = {state.name for state in q.states}  # other conditions are checked once per run
-    limits = (m for m in q.limits if states & {*needed(q.defined, [m.margin])[1]})
+    moving = {state.name for state in q.states}
+    for item in q.defined:
+        moving.update([item.name] if not moving.isdisjoint(names(item.value)) else [])
+    # other conditions are checked once per run
+    limits = (m for m in q.limits if not moving.isdisjoint(names(m.margin)))
     return Stage(
         quantities=tuple(map(sharp_quantity, values.quantities)),
         rates=values.rows[: len(rates)],

@@ -8,6 +8,7 @@ lanes act on each other is an additional shared unknown: a border.  A step costs
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
 from itertools import accumulate
 from textwrap import wrap
 from typing import final
@@ -188,8 +189,16 @@ def elimination(size: int, places: Iterable[Place]) -> Elimination:
         columns[column].add(row)
     left, order = set(range(size)), list[int]()
     below, right = list[tuple[int, ...]](), list[tuple[int, ...]]()
-    while left:
-        n = min(left, key=lambda n: ((len(rows[n] & left) - 1) * (len(columns[n] & left) - 1), n))
+
+    def cost(n: int) -> tuple[int, int]:
+        return (len(rows[n] & left) - 1) * (len(columns[n] & left) - 1), n
+
+    costs = [cost(n) for n in left]
+    heapify(costs)
+    while costs:
+        n = (least := heappop(costs))[1]
+        if n not in left or cost(n) != least:  # it was pushed again when it changed
+            continue
         left.remove(n)
         order.append(n)
         below.append(tuple(sorted(columns[n] & left)))
@@ -198,6 +207,8 @@ def elimination(size: int, places: Iterable[Place]) -> Elimination:
             rows[row].update(right[-1])
         for column in right[-1]:
             columns[column].update(below[-1])
+        for changed in {*below[-1], *right[-1]}:
+            heappush(costs, cost(changed))
     filled = sorted((row, column) for row in range(size) for column in rows[row])
     slots = {place: n for n, place in enumerate(filled)}
     pivots = tuple(zip(order, below, right, strict=True))

@@ -23,8 +23,10 @@ def with_excess(law: Expr, excesses: Mapping[tuple[Sym, Sym], Quantity]) -> Expr
     inner = rebuild(law, lambda part: with_excess(part, excesses))
     if not isinstance(inner, Add):
         return inner
-    for (hot, cold), quantity in excesses.items():
-        excess = Sym(quantity.name)
+    bare = {term.arg if isinstance(term, Neg) else term for term in inner.terms}
+    near = [pair for pair in excesses if bare.issuperset(pair)] if len(bare) > 1 else []
+    for hot, cold in near:
+        excess = Sym(excesses[hot, cold].name)
         for first, second, value in ((hot, neg(cold), excess), (neg(hot), cold, neg(excess))):
             if first in inner.terms and second in inner.terms:
                 rest = list(inner.terms)

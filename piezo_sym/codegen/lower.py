@@ -18,15 +18,16 @@ from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.tables import banks
 
 
-def lower(iphs: IPHS, verdict: str) -> Program:
+def lower(iphs: IPHS, verdict: str, known: Quantities | None = None) -> Program:
     """Return the program of a system.
 
     Parameters
     ----------
     iphs : from `derive`.
     verdict : one line on what is proved, for the head of printed modules.
+    known : its quantities, if they have been found.
     """
-    q = quantities_of(iphs)
+    q = known or quantities_of(iphs)
     functions = functions_of(q)
     rates = next(function for function in functions if function.name == "rhs").rows
     names = Names(q.taken)

@@ -2,6 +2,7 @@
 
 from piezo_sym.codegen import collocation_of, lower, printed
 from piezo_sym.codegen.program import blank
+from piezo_sym.codegen.quantities import quantities_of
 from piezo_sym.iphs import IPHS
 from piezo_sym.spec.checks.values import are_all_margins
 from piezo_sym.spec.values import Template
@@ -9,7 +10,8 @@ from piezo_sym.spec.values import Template
 
 def template_of(iphs: IPHS) -> Template:
     """Return the texts that are proved and written for a system, whatever its values are."""
-    texts = printed(blank(lower(iphs, "")), collocation_of(iphs))
+    q = quantities_of(iphs)
+    texts = printed(blank(lower(iphs, "", q)), collocation_of(iphs, q))
     tables = iphs.model.parameters, iphs.model.inputs
     factors = {n: str(entry.dimension.factor) for table in tables for n, entry in table.items()}
     return Template(texts, factors, quick=not iphs.junction.joints and are_all_margins(iphs.model))

@@ -33,7 +33,7 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.tables import conditions, greater, starts
+from piezo_sym.spec.tables import greater, starts
 
 
 def costate_name(port: Storage | Body) -> str:
@@ -105,7 +105,7 @@ def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
 
     Raises `SpecError` if a co-state law has no integral in closed form.
     """
-    above = (greater(condition.tree) for condition in conditions(circuit.model))
+    above = (greater(condition.tree) for condition in circuit.conditions)
     positive = frozenset(
         c.left.name for c in above if c.op == ">" and c.right == ZERO and isinstance(c.left, Sym)
     )

@@ -6,6 +6,7 @@ law is that tree; together they cover every point.
 
 from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import final
 
 from piezo_sym.expressions.calculus import choices, clause, rule
@@ -75,9 +76,16 @@ def settled(law: Expr, known: Iterable[Cmp]) -> Expr:
     """Return a law with its kinks as choices, those on `known` comparisons decided."""
     if not has_kinks(law):
         return law
+    holding, facts = _facts(tuple(known))
+    return decided(with_choices(law, holding), facts)
+
+
+@lru_cache(8)
+def _facts(known: tuple[Cmp, ...]) -> tuple[frozenset[Cmp], dict[Cmp, bool]]:
+    """Return the comparisons among some that have an opposite; these hold, the opposites do not."""
     holding = frozenset(condition for condition in known if condition.op in OPPOSITE)
-    facts = {opposite(condition): False for condition in holding}
-    return decided(with_choices(law, holding), facts | dict.fromkeys(holding, True))
+    opposites = {opposite(condition): False for condition in holding}
+    return holding, opposites | dict.fromkeys(holding, True)
 
 
 def has_kinks(node: Node) -> bool:

@@ -159,13 +159,13 @@ class Scope:
         """Return an expression that is written here; refuse names that stand for nothing yet."""
         parts = list(ast.walk(node))
         functions = [part.func for part in parts if isinstance(part, ast.Call)]
-        callable_ = {*self.file.calls, *self.file.helpers, *_WORDS}
-        if not callable_.issuperset(map(ast.unparse, functions)):
+        file, called = self.file, set(map(ast.unparse, functions)) - _WORDS
+        if any(name not in file.calls and name not in file.helpers for name in called):
             raise refused(node, "a call")
         for part in parts:
             if isinstance(part, ast.Name) and part not in functions:
                 found = self.names.get(part.id)
-                if found is None and part.id not in {*self.roles, "NAN", "zero"}:
+                if found is None and part.id not in self.roles and part.id not in {"NAN", "zero"}:
                     raise refused(part, "a name")
                 if isinstance(found, CVariable):
                     if found.is_open or found.start is None:

@@ -51,17 +51,16 @@ class Value:
     def __init__(self, field: GeneratorField, terms: Mapping[Mono, Exponent]) -> None:
         self.field = field
         self.terms = terms if all(terms.values()) else {m: c for m, c in terms.items() if c}
-
-    @cached_property
-    def _hash(self) -> int:
-        return hash(frozenset(self.terms.items()))
+        self._hash: int | None = None
 
     def __eq__(self, other: object) -> bool:
         """Return whether two values have the same normal form."""
         return isinstance(other, Value) and self.terms == other.terms
 
     def __hash__(self) -> int:
-        """Return the hash of the normal form."""
+        """Return the hash of the normal form, computed once."""
+        if self._hash is None:
+            self._hash = hash(frozenset(self.terms.items()))
         return self._hash
 
     def __add__(self, other: Value) -> Value:
@@ -223,7 +222,8 @@ class GeneratorField:
         terms: dict[Mono, Exponent] = {}
         more = []
         for m, a in left.terms.items():
-            joined = self._joined.setdefault(m, {})
+            if (joined := self._joined.get(m)) is None:
+                joined = self._joined[m] = {}
             for n, b in right.terms.items():
                 if n not in joined:
                     joined[n] = self._join(m, n)

@@ -20,7 +20,7 @@ from piezo_sym.codegen.c.style import (
 from piezo_sym.codegen.layout import term_lines
 from piezo_sym.codegen.program import Quantity
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.expressions.text import Style, write_comparison
+from piezo_sym.expressions.text import Style, piece, write_comparison
 from piezo_sym.expressions.tree import Add, Expr, If, LaneSum
 
 WIDTH = 96
@@ -60,13 +60,12 @@ def statement(target: str, value: Expr, words: Words, lane: str | None = None) -
 
     `target` ends with an operator, such as ``=``.
     """
-    text = words.text(value, lane)
+    parts, style = with_branches(value), words.style(lane)
+    text = piece(parts, style)[0]
     if words.number != "double" and is_constant(value):
         text = f"wide({text})"
-    parts = with_branches(value)
     if len(target) + len(text) + 10 <= WIDTH or not isinstance(parts, Add | If):
         return [f"{target} {text};"]
-    style = words.style(lane)
     if isinstance(parts, If):
         return _pick(target, parts, style, wide=words.number != "double")
     lines = list(term_lines(parts, lambda part: c_piece(part, style)))

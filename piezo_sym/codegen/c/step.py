@@ -6,7 +6,6 @@ the functions that copy those of a run into a lane of vectors; `run/engine` driv
 are given, so the text compares nothing, and holds for vectors, too.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import final
@@ -17,7 +16,7 @@ from piezo_sym.codegen.c.head import comment, opening
 from piezo_sym.codegen.c.lines import Words, indented, used_only
 from piezo_sym.codegen.c.names import c_names, fresh_names
 from piezo_sym.codegen.c.order import Write, least_over_lanes
-from piezo_sym.codegen.c.style import powers
+from piezo_sym.codegen.c.style import calls, powers
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
 from piezo_sym.codegen.layout import places
@@ -67,8 +66,9 @@ def c_step(program: Program, step: Collocation) -> str:
     text = "\n\n".join(functions)
     head = f'{opening(program)}\n{NOTE}\n#include "{program.name}.h"\n\n#include <math.h>'
     record = record_text(program, printer.names)
-    called = (name for name in _LIBRARY if re.search(rf"\b{name}_of\(", text))
-    real = REAL.replace("{functions}", "".join(f"#define {name}_of {name}\n" for name in called))
+    called = calls(text)
+    defined = (f"#define {n}_of {n}\n" for n in _LIBRARY if f"{n}_of" in called)
+    real = REAL.replace("{functions}", "".join(defined))
     return "\n\n".join([head, real, record, *powers(text, "real"), text, printer.tables()]) + "\n"
 
 

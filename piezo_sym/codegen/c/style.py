@@ -151,11 +151,17 @@ def c_piece(node: Expr, style: Style) -> Piece:
     return piece(with_branches(node), style)
 
 
+def calls(text: str) -> set[str]:
+    """Return what is called in a text."""
+    return set(re.findall(r"\b(\w+)\(", text))
+
+
 def helpers(text: str) -> Iterator[str]:
     """Yield the definition of each function that `text` calls and <math.h> lacks."""
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    called = calls(text)
     for name, (arguments, value) in _HELPERS.items():
-        if re.search(rf"\b{name}\(", text):
+        if name in called:
             ending = "" if value.endswith("*/") else ";"
             yield f"static double {name}({arguments})\n{{\n    return {value}{ending}\n}}"
     yield from powers(text, "double")
@@ -164,7 +170,8 @@ def helpers(text: str) -> Iterator[str]:
 def powers(text: str, number: str) -> Iterator[str]:
     """Yield the definition of each whole power that `text` calls."""
     kind, end = ("inline real", "_of") if number == "real" else ("double", "")
+    called = calls(text)
     for n in range(2, MOST_FACTORS + 1):
-        if re.search(rf"\bpower_{n}{end}\(", text):
+        if f"power_{n}{end}" in called:
             product = "*".join("z" * n)
             yield f"static {kind} power_{n}{end}({number} z)\n{{\n    return {product};\n}}"
