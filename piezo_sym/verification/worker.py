@@ -12,6 +12,7 @@ import pickle
 import resource
 import signal
 import sys
+from contextlib import suppress
 from time import monotonic
 
 from piezo_sym.verification.process import END, answer, packed
@@ -34,6 +35,10 @@ def main() -> None:
     given, out = sys.stdin.buffer, sys.stdout.buffer
     sys.stdout = sys.stderr
     import piezo_sym.verification.examine  # noqa: F401  # while the caller still reads its spec
+    from piezo_sym.proofs.solvers import solver
+
+    with suppress(OSError):  # it is tried again when something is asked
+        solver("z3").worker.start()  # it imports its library meanwhile
 
     for number, line in enumerate(given):
         request, begun = pickle.loads(base64.b64decode(line)), monotonic()
