@@ -539,6 +539,7 @@ def test_a_free_position_that_drifts_stays_at_its_start_and_the_others_repeat():
     assert found.residual < 1e-6
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("cache")
 @pytest.mark.filterwarnings("ignore:nothing settles")
 def test_a_free_position_may_be_coupled_to_the_temperature():
@@ -553,6 +554,7 @@ def test_a_free_position_may_be_coupled_to_the_temperature():
     assert found.initial["S"] == pytest.approx(float(run.S[-1]), rel=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("cache")
 def test_a_state_that_drifts_and_moves_others_is_named():
     """Without a damper p grows by the impulse of F, 10 N in 0.2 s, until the spring is hit."""
