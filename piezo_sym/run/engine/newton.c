@@ -55,7 +55,8 @@ static inline MODEL(complex) MODEL(gamma)(real h, long first)
 /* Newton's change of the rates, which replaces the residuals in `gap`. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
-    MODEL(transform)(m, BASIS_STAGE);
+    if (STAGES > 1)
+        MODEL(transform)(m, BASIS_STAGE);
 #if STAGES % 2
     MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
 #endif
@@ -78,7 +79,8 @@ static void MODEL(change)(const MODEL(block) *m, real h)
             }
     }
 #endif /* PAIRS */
-    MODEL(transform)(m, STAGE_BASIS);
+    if (STAGES > 1)
+        MODEL(transform)(m, STAGE_BASIS);
 }
 
 /*

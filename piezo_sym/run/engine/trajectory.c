@@ -167,8 +167,13 @@ static void MODEL(point)(MODEL(batch) *b, const real *x, const real *branch, con
 
 static void MODEL(copy)(mask where, const real *from, real *to, long size)
 {
+#if REAL_WIDTH == 1
+    if (where)
+        memcpy(to, from, (size_t)size * sizeof(real));
+#else
     for (long k = 0; k < size; ++k)
         to[k] = chosen(where, from[k], to[k]);
+#endif
 }
 
 /* Rates and switching functions at the current states; lanes in `choosing` choose branches, too. */
