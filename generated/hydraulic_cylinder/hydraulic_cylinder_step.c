@@ -1164,11 +1164,13 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 /* Newton's change of the rates, which replaces the residuals in `gap`. */
 static void MODEL(change)(const MODEL(block) *m, real h)
 {
-    MODEL(transform)(m, BASIS_STAGE);
+    if (STAGES > 1)
+        MODEL(transform)(m, BASIS_STAGE);
 #if STAGES % 2
     MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
 #endif
-    MODEL(transform)(m, STAGE_BASIS);
+    if (STAGES > 1)
+        MODEL(transform)(m, STAGE_BASIS);
 }
 
 /*
