@@ -36,6 +36,9 @@ from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 
 WHERE = "linearize"
+#: Distances from a point, over the least one: a derivative that grows from each to the next by more
+#: than GROWTH has no bound there.  The least is of round-off, or LEAST at zero.
+NEAR, GROWTH, LEAST = (256.0, 16.0, 1.0), 1.1, 1e-100
 
 
 @final
@@ -166,7 +169,8 @@ def _linear(
     point = np.concatenate([x, u, np.zeros(len(outputs))])
     with np.errstate(all="ignore"):
         matrix = derivatives.jacobian(point, np.empty(0), p)
-    if not np.isfinite(matrix).all():
+        steep = _is_steep(derivatives, p, point, np.abs(matrix))
+    if steep or not np.isfinite(matrix).all():
         what = "the rates and outputs have no derivative there"
         remedy = "give another 'at', or other inputs"
         raise RunError(what, f"model '{module.NAME}'", remedy=remedy)
@@ -181,3 +185,15 @@ def _linear(
         *(tuple(states), tuple(inputs), tuple(outputs), units),
         *(x, u, module.outputs(x, u, p), module.rhs(x, u, p)),
     )
+
+
+def _is_steep(derivatives: Any, p: Any, point: FloatArray, there: FloatArray) -> bool:
+    """Return whether a derivative has no bound near a point, as that of a root at zero."""
+    step = np.diag(np.maximum(4 * np.finfo(float).eps * np.abs(point), LEAST))
+    for side in (1.0, -1.0):
+        around = (point[:, None] + side * times * step for times in NEAR)
+        far, near, nearest = (np.abs(derivatives.jacobian(x, np.empty(0), p)) for x in around)
+        grows = (near > GROWTH * far) & (nearest > GROWTH * near)
+        if np.any(grows & (nearest > GROWTH * there[..., None])):
+            return True
+    return False

@@ -7,7 +7,9 @@ from scipy.signal import StateSpace
 from piezo_sym import linearize, load, operating_point
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.modules import module_of
+from piezo_sym.spec.load import parse
 from tests.networks.test_acceptance import SPECS
+from tests.proofs.test_root_laws import TEXT
 
 ALL = ["piezo_stack", *(str(path) for path in sorted(SPECS.glob("*.toml")))]
 
@@ -81,6 +83,29 @@ def test_an_operating_point_brings_its_inputs_and_parameters() -> None:
         np.sort(rest.eigenvalues.real), rel=1e-9, abs=1e-6
     )
     assert linearize("piezo_stack", at=rest, inputs={"V_in": 60.0}).u[1] == 60.0
+
+
+@pytest.mark.parametrize(
+    ("law", "slope"),
+    [
+        ("d*v*sqrt(abs(v)/v_0)", 0.0),
+        ("d*v*(1 + sqrt(abs(v)/v_0))", -0.4),
+        ("d*v_0*sign(v)*sqrt(abs(v)/v_0)", None),
+        ("d*v*(1 + (abs(v - v_0)/v_0)**(1/3))", None),
+    ],
+)
+def test_a_root_has_a_slope_at_a_kink_or_says_that_it_has_none(
+    law: str, slope: float | None
+) -> None:
+    model = parse(TEXT.format(law=law, unit="N*s/m"))
+    at = {"p": 0.1 if "v - v_0" in law else 0.0, "q": 0.0}
+    if slope is None:
+        with pytest.raises(RunError, match="no derivative there"):
+            linearize(model, at=at)
+    else:
+        linear = linearize(model, at=at)
+        p = linear.states.index("p")
+        assert linear.A[p, p] == slope
 
 
 def test_what_has_no_linear_model_says_so() -> None:
