@@ -164,7 +164,7 @@ def _printed(iphs: IPHS, apart: Apart) -> Iterator[Any]:
     """Yield the texts of a module, then the row on them, read back."""
     yield (made := template_of(iphs))
     texts = made.filled(iphs.model.flatten().model_dump())
-    with apart(program_row(iphs, texts, (end,)) for end in ("_step.c",)) as of_step:
+    with apart(program_row(iphs, texts, [end]) for end in ["_step.c"]) as of_step:  # one, lazily
         yield worst([program_row(iphs, texts, (".py", ".c")), next(of_step)])
 
 

@@ -94,10 +94,7 @@ class Batch:
         extra: int = 0,
     ) -> None:
         self._engine, self._layout, self.extra = engine, layout, extra
-        one = len(parameters) == 1
-        self._structures = (
-            engine.structure(*parameters) if one else engine.structure.many(parameters)
-        )
+        self._structures = engine.structure.many(parameters)
         self.inputs, self._end = InputRecords(inputs), inputs.end
         self._times = np.ascontiguousarray(times, dtype=float)
         self.records: Any = np.zeros(len(x), record_dtype("run"))
