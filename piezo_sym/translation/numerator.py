@@ -17,7 +17,7 @@ from piezo_sym.translation.signs import has_sign
 MOST_TERMS = 200_000
 #: Beside a product of two terms in `GeneratorField`: one in FLINT is so many times faster, and a
 #: term given to FLINT so many times slower.
-FASTER, SLOWER = 10, 10
+FASTER, SLOWER = 30, 3
 
 
 class _Roots:
