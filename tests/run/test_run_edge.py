@@ -1,5 +1,7 @@
 """The edge of the domain: where runs stop, what they say there, and what stays inside."""
 
+import signal
+from contextlib import contextmanager
 from math import log
 
 import numpy as np
@@ -10,6 +12,7 @@ from piezo_sym import ramp, sine, step
 from piezo_sym.errors import RunError
 from piezo_sym.modules import module_of
 from piezo_sym.run import simulate
+from piezo_sym.spec.load import parse
 
 
 @pytest.fixture(scope="module")
@@ -139,3 +142,64 @@ def test_samples_lie_in_the_domain_however_near_its_edge(module):
     inputs = {"T_e": 296.15 + 1e-9, "V_in": sine(1e-3, 100)}
     run = simulate(module, inputs=inputs, duration=0.05, initial={"S": 1e-6})
     assert np.all(run.T_body > 296.15)
+
+
+#: A magnet whose gap closes, as a stop holds the armature too late: its energy has no slope there.
+MAGNET = """
+[model]
+name = "magnet"
+[parameters]
+L_0 = { value = 20, unit = "mH" }
+g = { value = 2, unit = "mm" }
+x_0 = { value = 1, unit = "mm" }
+L_s = { value = 5, unit = "mH" }
+m = { value = 40, unit = "g" }
+k = { value = 3, unit = "N/mm" }
+k_c = { value = 500, unit = "N/mm" }
+g_s = { value = 1.5, unit = "mm" }
+d = { value = 4, unit = "N*s/m" }
+R = { value = 5, unit = "ohm" }
+T_0 = { value = 293, unit = "K" }
+c = { value = 0.5, unit = "J/K" }
+[inputs]
+u = { unit = "V", default = 11.0 }
+[domain]
+assume = ["g + x > 0", "x_0 > 0", "L_0 > 0", "L_s > 0", "g > 0", "R >= 0", "d >= 0", "k_c >= 0"]
+[elements]
+src = { kind = "voltage_source", between = ["in", "gnd"], input = "u" }
+coil = { kind = "resistor", between = ["in", "c"], voltage = "R*i", heats = "copper" }
+copper = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+arm = { kind = "mass", at = "arm", mass = "m", state = "p" }
+spring = { kind = "spring", between = ["arm", "wall"], stiffness = "k", state = "q" }
+stop = { kind = "spring", between = ["arm", "wall"], force = "k_c*min(q + g_s, 0)", state = "z" }
+guide = { kind = "damper", between = ["arm", "wall"], force = "d*v", heats = "copper" }
+[elements.magnet]
+kind = "storage"
+energy = "phi**2/(2*(L_s + L_0*x_0/(g + x)))"
+[elements.magnet.states]
+phi = { rate = "voltage", between = ["c", "gnd"] }
+x = { rate = "velocity", between = ["arm", "wall"] }
+"""
+
+
+@contextmanager
+def ended_after(seconds):
+    """Raise `TimeoutError` where the body would never end."""
+
+    def late(*_):
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 3e-6, 1e-8])
+def test_a_run_that_crawls_towards_the_edge_ends_there(rtol):
+    """Steps of one digit of the time succeed there: some 10^15 would be needed."""
+    with ended_after(120), pytest.raises(RunError, match=r"leaves the domain at t = 0\.01526"):
+        piezo_sym.simulate(parse(MAGNET), duration=0.02, rtol=rtol)

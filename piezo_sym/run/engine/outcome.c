@@ -116,6 +116,7 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
     run->iterations = (long)LANE(&b->m.iterations, 0, lane);
     const double most = l->refused ? 1.0 : 4.0; /* a length that was just refused is not tried again */
     l->refused = l->t > before ? 0 : l->refused + 1; /* switches may lead back to each other at one time */
+    l->crawled = l->t - before > CRAWL * fabs(b->stop) ? 0 : l->crawled + 1;
     l->phase = STEP;
     if (b->fixed > 0.0) {
         l->halved = l->h < b->fixed ? l->halved : 0;
@@ -140,6 +141,8 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
     MODEL(sample_here)(b, lane);
     if (l->t >= b->stop)
         MODEL(end_run)(b, lane, 0);
+    else if (l->crawled > MOST_CRAWLED && b->fixed == 0.0)
+        MODEL(end_run)(b, lane, 1);
     else if (l->refused > MOST_REFUSED)
         MODEL(stuck)(b, lane);
     else if (l->t >= l->segment->stop) {

@@ -61,6 +61,7 @@ typedef struct {
     double steady; /* the length that the error of the step before allows */
     int phase, behind, predicted, fresh, last, cuts, refused, halved;
     int stuck;   /* whether it goes over kinks since it could not end at them */
+    int crawled; /* steps in a row that are hardly longer than round-off of the time */
     int settled; /* whether no switch was located after all: the step is solved to full accuracy */
     long which; /* the switch at the end of the step; -1 if none */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
@@ -94,6 +95,12 @@ typedef struct {
 } MODEL(batch);
 
 enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
+/*
+ * A run ends after so many steps in a row that are at most CRAWL times the time at its end: at the edge
+ * of the domain a law may grow without bound, and 10^15 steps would not lead it over.
+ */
+enum { MOST_CRAWLED = 1000 };
+#define CRAWL 4e-16
 /* Halvings of a fixed step in all, until one of full length succeeds: a run with more fails. */
 enum { MOST_HALVED = 1000 };
 /* The shortest part of a fixed step. */
