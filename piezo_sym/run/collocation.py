@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import ceil
+from threading import Thread
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -16,9 +17,9 @@ from numpy.typing import NDArray
 from piezo_sym.errors import STICKING, PiezoError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import Trajectory
-from piezo_sym.run.engine.batch import Batch, Stepping, collocation_library
-from piezo_sym.run.engine.engine import Engine, engine_of
-from piezo_sym.run.engine.library import Layout
+from piezo_sym.run.engine.batch import Batch, Stepping, collocation_library, steps_of
+from piezo_sym.run.engine.engine import Engine, engine_of, functions_of
+from piezo_sym.run.engine.library import Layout, Sources, library
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.module import UNPROVED, GeneratedModule, row_count, verdict_of
 from piezo_sym.run.system import QUIET, DrivenModule
@@ -233,7 +234,18 @@ def compile_ahead(module: GeneratedModule, stages: int) -> None:
     """Compile what one run of a module needs with steps of `stages` stages, if possible."""
     layout = layout_of(1, row_count(module.STATES, module.Parameters()), side_by_side=True)
     with suppress(PiezoError, OSError):  # the run raises it
-        collocation_library(engine_of(module), stages, layout)
+        functions = functions_of(module)
+        steps = steps_of(module, functions, stages, layout)
+        beside = Thread(target=_compiled, args=(steps,), daemon=True)
+        beside.start()
+        engine = engine_of(module)
+        beside.join()
+        collocation_library(engine, stages, layout)
+
+
+def _compiled(sources: Sources) -> None:
+    with suppress(PiezoError, OSError):
+        library(sources)
 
 
 def read_order(order: object, where: str) -> int:

@@ -6,6 +6,7 @@ Input: a function as `c_text` gives it.  Output: values by row.  The grammar, in
                 const double *[restrict] NAME = pointer;    NAME = or += expression;
                 [static] const double NAME[n] = { ... };    OUT[place] = or += expression;
                 for (long j = 0; j < size; ++j) { ... }     { ... }     return expression;
+                FUNCTION_part_N(its own arguments);
     expression  ? :  ||  comparisons  + - * /  calls, names, numbers, NAME[place], P->NAME
 
 A loop stands for every lane of a bank: what it adds up is a sum over lanes, what it writes is a row
@@ -14,16 +15,16 @@ of that lane.
 
 import ast
 from collections import ChainMap
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
+from piezo_sym.translation.c_forms import helper_is, lists
 from piezo_sym.translation.c_scope import Branch, CVariable, Deferred, File, Scope, kind_of
-from piezo_sym.translation.expressions import PLAIN, refused
+from piezo_sym.translation.expressions import refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import LEAST, Key, Rows
-from piezo_sym.translation.zero import is_zero
 
 #: What may be written to: results, ledger rows, switching functions, margins.
 WRITTEN = ("out", "rows", "s", "m")
@@ -61,6 +62,7 @@ class CFunction:
         self.written = list[tuple[str, Key, Deferred, bool]]()
         self.loops, self.summed, self.least = 0, dict[str, CVariable | None](), set[Key]()
         self.returned = "out" in roles.values()
+        self.node, self.whole, self.called = node, self.scope, set[str]()
         self._block(self.scope, node.body)
         if not self.returned or self.least - {key for _, key, _, _ in self.written}:
             raise NotShownError(f"{self.name} leaves numbers that were never written")
@@ -120,12 +122,28 @@ class CFunction:
                 self._block(self.scope.block(), body)
             case ast.Return(ast.expr() as value):
                 self._return(value)
+            case ast.Expr(ast.Call(ast.Name(name), args)) if name in self.file.parts:
+                self._part_of(self.file.parts[name], args)
             case ast.Expr(ast.Name(name)) if name in self.scope.roles:  # (void)u;
                 pass
             case ast.Pass():
                 pass
             case _:
                 raise refused(node, "a statement")
+
+    def _part_of(self, part: ast.FunctionDef, args: list[ast.expr]) -> None:
+        """Read a part, which has the function's arguments and no names in common with it besides.
+
+        A part is called once and calls none, so that reading ends.
+        """
+        outer, own = self.scope, self.node.args
+        same = ast.unparse(part.args) == ast.unparse(own) and own.args
+        given = [ast.unparse(arg) for arg in args] == [arg.arg for arg in own.args]
+        alone = outer is self.whole and part.name not in self.called
+        if not (same and given and alone and kind_of(part.returns) == "static void"):
+            raise refused(args[0], f"a call of {part.name}")
+        self.called.add(part.name)
+        self._block(replace(outer, names=ChainMap()), part.body)
 
     def _return(self, node: ast.expr) -> None:
         if self.returned or self.scope.lanes:
@@ -228,7 +246,7 @@ class CFunction:
         if rows.name == "margins" and self._is_least(role, place, at, node):
             return
         key = rows.key_at(at, self.scope.banks)
-        listed = self._listed(node)
+        listed = lists(node, self.scope) if self.name == "initial_state" else []
         if key is None or (listed and added):
             raise refused(place, "a place of another row")
         for lane, part in enumerate(listed):
@@ -242,20 +260,6 @@ class CFunction:
         if branch in self.switches or len(self.scope.lanes) > 1:
             raise refused(node, "a switching function that is not written once")
         self.switches[branch] = self._kept(node)
-
-    def _listed(self, node: ast.expr) -> list[Deferred]:
-        """Return what ``j < n ? listed[j] : (double)NAN`` lists, n the list's length."""
-        match node:
-            case ast.IfExp(
-                ast.Compare(ast.Name(j), [ast.Lt()], [ast.Constant(n)]),
-                ast.Subscript(ast.Name(name), ast.Name(k)),
-                ast.Name("NAN"),
-            ) if self.scope.lanes and j == k == self.scope.lanes[-1][0]:
-                found = self.scope.names.get(name)
-                if isinstance(found, list) and n == len(found) > 1 and self.name == "initial_state":
-                    own = {part.scope.banks for part in found} <= {(), self.scope.banks}
-                    return found if own else []
-        return []
 
     def _is_least(self, role: str, place: ast.expr, at: Value, node: ast.expr) -> bool:
         """Read the least value over the lanes: ``out[n] = HUGE_VAL``, then ``min(out[n], ...)``."""
@@ -280,13 +284,3 @@ class CFunction:
         if scope.lanes or key in self.least:
             raise refused(node, "a margin")
         return False
-
-
-def helper_is(file: File, name: str, function: Callable[..., Value], count: int) -> bool:
-    """Return whether a function of the file's own is a given one, of so many numbers."""
-    if name not in file.helpers:
-        return False
-    args = [file.known.field.name(f"{n} of {name}") for n in range(count)]
-    names = {f"a{n}": (arg, PLAIN) for n, arg in enumerate(args)}
-    call = ast.Call(ast.Name(name), [ast.Name(arg) for arg in names], [])
-    return is_zero(Scope(file, {}, ChainMap({**names})).read(call)[0] - function(*args))

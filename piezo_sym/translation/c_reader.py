@@ -5,14 +5,15 @@ Output: values by function and row.  The grammar:
 
     file        comments, ``#include "<model>.h"``, ``#include <math.h>``, functions
     helper      static double NAME(double or int NAME, ...) { return expression; }
+    part        static void FUNCTION_part_N(as the function, which calls it) { ... }
 
 and for the rest see `c_function`.  Helpers mean what their text says.  Nothing is compiled.
 """
 
 import ast
-import re
 
 from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.translation.c_forms import add_helper, add_part
 from piezo_sym.translation.c_function import CFunction
 from piezo_sym.translation.c_scope import File, kind_of
 from piezo_sym.translation.c_text import python_of
@@ -40,6 +41,9 @@ def read_c(text: str, known: Proved) -> dict[Key, Value]:
         if kind_of(node.returns) == "static double":
             add_helper(node, file, _HELPERS)
             continue
+        if kind_of(node.returns) == "static void":
+            add_part(node, file)
+            continue
         function = CFunction(node, file)
         if function.name in seen:
             raise NotShownError(f"{function.name} is defined twice")
@@ -49,12 +53,3 @@ def read_c(text: str, known: Proved) -> dict[Key, Value]:
     if seen != SIGNATURES.keys():
         raise NotShownError("the C file lacks a function")
     return rows
-
-
-def add_helper(node: ast.FunctionDef, file: File, allowed: str) -> None:
-    """Take a function of the file's own, one of those allowed."""
-    known = node.name in file.helpers or node.name in file.calls
-    kinds = {kind_of(arg.annotation) for arg in node.args.args}
-    if known or not re.fullmatch(allowed, node.name) or not kinds <= {file.number, "int"}:
-        raise NotShownError(f"a function {node.name} of the C file's own")
-    file.helpers[node.name] = node

@@ -47,6 +47,7 @@ class File:
     #: Of a function and an argument, which rows are written to it; else the function's.
     results: Mapping[str, str] = field(default_factory=dict)
     helpers: dict[str, ast.FunctionDef] = field(default_factory=dict)  # functions of the file's own
+    parts: dict[str, ast.FunctionDef] = field(default_factory=dict)  # of functions
 
 
 @final

@@ -5,6 +5,7 @@ by function and row.  The grammar:
 
     file        comments, the two headers, MACROS, DATA, functions, enumerations, tables
     function    static void <model>_{integrands, stage, slopes, sizes}(...), see `c_function`
+    part        static void <model>_{stage, slopes}_part_N(as the function) { ... }
     helper      static inline real power_N_of(real z) { return expression; }
     table       enum { NAME = n, ... };    static const int NAME[] = { n, ... };
 
@@ -24,15 +25,14 @@ import re
 from collections import ChainMap
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 from typing import final
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.tables import banks
-from piezo_sym.translation.c_function import NOT_COMPARED, CFunction, helper_is
-from piezo_sym.translation.c_reader import add_helper
+from piezo_sym.translation.c_forms import add_helper, add_part, helper_is
+from piezo_sym.translation.c_function import NOT_COMPARED, CFunction
 from piezo_sym.translation.c_scope import Branch, File, Scope, kind_of
 from piezo_sym.translation.c_text import python_of
 from piezo_sym.translation.change import put, spelled
@@ -153,6 +153,8 @@ class _Step:
             match node:
                 case ast.FunctionDef() if kind_of(node.returns) == "static inline real":
                     self._power(node)
+                case ast.FunctionDef(name) if "_part_" in name:
+                    add_part(node, file)
                 case ast.FunctionDef(name):
                     self.functions[self._own(name)] = node
                 case ast.Assign([ast.Name(name)], number):
@@ -175,8 +177,8 @@ class _Step:
     def _power(self, node: ast.FunctionDef) -> None:
         """Take a function that is a whole power."""
         add_helper(node, self.file, "power_[2-8]_of")
-        power = partial(self.field.whole_power, n=int(node.name.split("_")[1]))
-        if not helper_is(self.file, node.name, power, 1):
+        n = int(node.name.split("_")[1])
+        if not helper_is(self.file, node.name, lambda z: self.field.whole_power(z, n), 1):
             raise NotShownError(f"{node.name} is not shown to be a power")
 
     def rows(self, *, bends: bool) -> dict[Key, Value]:

@@ -10,6 +10,7 @@ Input: the text of a C file.  Output: its functions, tables and enumerations, as
     for (long j = 0; j < n; ++j) { ... }      for j in lanes(n): ...
     the same behind ``#pragma omp simd``      for j in simd(n, its sums): ...
     { ... }                                   with block: ...
+    f(a, b);                                  f(a, b)
     c ? a : b    a || b    p->a               (a) if (c) else (b)    a or b    p.a
 
 Operators bind as Python's do, but for ``?`` and for comparisons of comparisons; readers refuse
@@ -131,6 +132,8 @@ def _statement(text: str) -> str:
         if "*" in kind:  # x + place points to x[place]
             value = re.sub(r"^( = \w+) \+ (.*)$", r"\1 [ \2 ]", value)
         return f"{name}: '{kind.strip()}{size}'{value and f' = {_chosen(value[3:])}'}"
+    if re.fullmatch(r"\w+ \( \w+(?: , \w+)* \)", text):
+        return text
     changed = re.fullmatch(r"(return|.+? \+?=|\( void \)) (.+)", text)
     if changed is None:
         raise NotShownError(f"the C file has a statement {text[:40]!r}")

@@ -4,6 +4,7 @@ from time import process_time
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from piezo_sym import derive, layered, load, operating_point, simulate, sine
 from piezo_sym.errors import UsageError
@@ -50,6 +51,22 @@ def test_it_is_hottest_inside():
     ds = simulate("layered_stack", inputs={"V_in": sine(100, 100)}, duration=0.05, step=1e-4)
     T = [float(ds[f"T_body_{j}"][-1]) for j in (1, 2, 3)]
     assert T[1] > max(T[0], T[2]) > 298.15
+
+
+@pytest.mark.long
+def test_a_stack_of_200_layers_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where no module of its name is
+    n = 200
+    model, x = layered(n), np.tile([0, 0, 0, 0, 5 / n * np.log(298.15 / 296.15)], n)
+    ds = simulate(model, inputs={"V_in": 80.0}, duration=2e-4, times=3, rtol=1e-8)
+    given = {"method": "LSODA", "rtol": 1e-10, "atol": 1e-13, "args": ((0.0, 80.0, 298.15), n)}
+    end = solve_ivp(lambda _, *rest: by_hand(*rest), (0, 2e-4), x, **given).y[:, -1]
+    scale = np.tile(np.abs(end.reshape(n, 5)).max(axis=0), n)
+    names = [f"{name}_{j}" for j in range(1, n + 1) for name in ("q", "p", "Q", "phi", "S")]
+    found = [float(ds[name][-1]) for name in names]
+    assert (np.abs(found - end) / scale).max() < 1e-6
+    balance = ds["energy"] - ds["energy"][0] - ds["supplied"]
+    assert np.abs(balance).max() < 1e-12 * np.abs(ds["energy"]).max()
 
 
 @pytest.mark.parametrize("n", [1, pytest.param(100, marks=pytest.mark.long)])

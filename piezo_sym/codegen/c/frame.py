@@ -12,6 +12,7 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.c.head import comment, declaration
 from piezo_sym.codegen.c.lines import Words, indented, stage_lines, used_only, write_lines
 from piezo_sym.codegen.c.order import Write, stages
+from piezo_sym.codegen.c.parts import in_parts
 from piezo_sym.codegen.layout import Places, places
 from piezo_sym.codegen.program import Described, OutputRow, Program, Quantity, needed
 from piezo_sym.expressions.tree import Expr
@@ -57,6 +58,44 @@ class FunctionFrame:
         used = used_only(body, [*unique.items()], [self.words[word] for word in arguments])
         head = declaration(self.program, name, arguments, self.words, self.lines.number)
         return "\n".join([*comment(doc), head, "{", *indented([*used, *body]), "}"])
+
+    def writing(
+        self,
+        name: str,
+        arguments: Sequence[str],
+        doc: str,
+        quantities: Sequence[Quantity],
+        writes: Sequence[Write],
+        *,
+        first: Sequence[str] = (),
+        last: Sequence[str] = (),
+        roots: Sequence[Expr] = (),
+        lines: Words | None = None,
+        local: Sequence[Definition] = (),
+        known: Collection[str] = (),
+    ) -> str:
+        """Return a function that computes and writes; a large one calls parts, printed before it.
+
+        Parameters
+        ----------
+        first, last : lines of its own, before and after the rest.
+        roots : what these need.
+        local, known : as in `function`.
+        """
+        wanted = needed(quantities, [*roots, *(write.value for write in writes)])[0]
+        fields = [array for word, array in self.arrays.items() if word != "u"]
+        groups, left = in_parts(wanted, writes, fields)
+        texts, calls = list[str](), list[str]()
+        given = ", ".join(self.words[word] for word in arguments)
+        for n, group in enumerate(groups, 1):
+            part, what = f"{name}_part_{n}", f"Part {n} of {len(groups)} of `{name}`"
+            inner = self.computed(quantities, group, lines=lines)
+            texts.append(self.function(part, arguments, what, inner, local=local, known=known))
+            calls.append(f"{self.program.name}_{part}({given});")
+        own = [*first, *calls, *self.computed(quantities, left, roots, lines), *last]
+        return "\n\n".join(
+            [*texts, self.function(name, arguments, doc, own, local=local, known=known)]
+        )
 
     def sizes(self) -> Iterator[Definition]:
         """Yield the sizes of banks."""

@@ -4,6 +4,7 @@ Input: a `Program`.  Output: the text of ``<model>.h``.  Texts of a spec are in 
 changed so that they cannot end one.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
 
@@ -14,6 +15,8 @@ from piezo_sym.errors import one_line
 
 WIDTH = 96
 MOST_LANES = 16  # of a bank whose values are in the header
+#: The end of the name of a function that computes a part of another.
+PART = re.compile(r"_part_\d+$")
 #: Docstrings of functions that the program does not describe.
 FUNCTIONS = {
     "states": "Number of states n",
@@ -141,7 +144,7 @@ def declaration(
     types = dict.fromkeys("xgbu", f"const {number or 'double'} *{restrict}")
     types |= dict.fromkeys(("out", "rows", "s", "m"), f"{number or 'double'} *{restrict}")
     types["p"] = f"const {program.name}_{record} *{restrict}"
-    static = "static " if number == "real" else ""
+    static = "static " if number == "real" or PART.search(name) else ""
     start = f"{static}{SCALARS.get(name, 'void')} {program.name}_{name}("
     texts = [f"{types[argument]}{words[argument]}" for argument in arguments]
     line = f"{start}{', '.join(texts)})"

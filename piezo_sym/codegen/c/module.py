@@ -72,26 +72,31 @@ class _Printer:
             body += statement("return", value, self.lines)
             return frame.function(function.name, arguments, function.doc, body)
         writes, local = frame.writes("out", function.rows)
-        body = frame.computed(self.program.quantities, writes)
-        at = frame.layout("out", [row.slot for row in function.rows])
+        at, last = frame.layout("out", [row.slot for row in function.rows]), list[str]()
         for n, row in enumerate(function.rows):
-            body += self._listed(frame.place(at, n), row) if row.listed else []
-        return frame.function(function.name, (*arguments, "out"), function.doc, body, local=local)
+            last += self._listed(frame.place(at, n), row) if row.listed else []
+        name, arguments, doc = function.name, (*arguments, "out"), function.doc
+        quantities = self.program.quantities
+        return frame.writing(name, arguments, doc, quantities, writes, last=last, local=local)
 
     def jacobian(self) -> str:
         """Return the function that fills the Jacobian, row after row."""
         entries, n, j = self.program.jacobian, self.n, self.j
         writes = [self._entry(entry) for entry in entries if entry.value != ZERO]
-        body = [f"for (long {j} = 0; {j} < {n}*{n}; ++{j}) {{"]
-        body += [f"    {self.out}[{j}] = 0.0;", "}"]
-        roots = [*jacobian_roots(entries)]
-        body += self.frame.computed(self.program.quantities, writes, roots)
-        for entry in entries:
-            for outer in entry.outer:
-                body += self._outer(entry, outer)
-        local = [*ends(self.states), (n, f"const long {n} = {self.states.size};")]
-        doc = FUNCTIONS["jacobian"]
-        return self.frame.function("jacobian", ("x", "u", "p", "out"), doc, body, local=local)
+        first = [f"for (long {j} = 0; {j} < {n}*{n}; ++{j}) {{"]
+        first += [f"    {self.out}[{j}] = 0.0;", "}"]
+        outer = [(entry, outer) for entry in entries for outer in entry.outer]
+        return self.frame.writing(
+            "jacobian",
+            ("x", "u", "p", "out"),
+            FUNCTIONS["jacobian"],
+            self.program.quantities,
+            writes,
+            first=first,
+            last=[line for entry, product in outer for line in self._outer(entry, product)],
+            roots=[root for entry, _ in outer for root in jacobian_roots([entry])],
+            local=[*ends(self.states), (n, f"const long {n} = {self.states.size};")],
+        )
 
     def margins(self) -> str:
         """Return the function of the margins, by which the conditions of the domain hold."""

@@ -58,7 +58,8 @@ def c_names(program: Program) -> dict[str, str]:
     words += [f"{bank}_count" for bank in program.counts]
     words += [quantity.name for quantity in program.quantities]
     for word in dict.fromkeys(words):
-        names[word] = fresh(word, taken) if word in reserved else word
+        part = word.startswith(f"{program.name}_") and "_part_" in word
+        names[word] = fresh(word, taken) if part or word in reserved else word
         taken.add(names[word])
     return names
 

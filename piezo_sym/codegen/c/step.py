@@ -155,11 +155,12 @@ class _Printer:
             "functions, whose signs decide the branches; to m the margins of those conditions of "
             "the domain that depend on the state"
         )
-        return self.frame.function(
+        return self.frame.writing(
             "stage",
             ["x", "g", "b", "u", "p", "out", "rows", "s", "m"],
             doc,
-            self.frame.computed(stage.quantities, writes),
+            stage.quantities,
+            writes,
             local=[end for _, group in results for end in group],
         )
 
@@ -173,11 +174,14 @@ class _Printer:
         means = {field.name for field in self.given} & computed
         banks = {name: bank for name, bank in self.banks.items() if name not in means}
         lines = replace(self.frame.lines, arrays=banks)
-        body = self.frame.computed(self.step.slopes.quantities, writes, lines=lines)
-        doc = "Derivative of the rates by the state, on branches b; the tables tell its entries"
-        known = {self.names[name] for name in means}
-        return self.frame.function(
-            "slopes", ["x", "g", "b", "u", "p", "out"], doc, body, known=known
+        return self.frame.writing(
+            "slopes",
+            ["x", "g", "b", "u", "p", "out"],
+            "Derivative of the rates by the state, on branches b; the tables tell its entries",
+            self.step.slopes.quantities,
+            writes,
+            lines=lines,
+            known={self.names[name] for name in means},
         )
 
     def sizes(self) -> str:

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.engine import Engine
-from piezo_sym.run.engine.library import Layout, read_source, shared_library
+from piezo_sym.run.engine.library import Layout, Sources, read_source, shared_library
 from piezo_sym.run.engine.records import DOUBLE, LONG, addresses, at, c_record, record_dtype
 from piezo_sym.run.engine.signals import InputRecords
 from piezo_sym.run.inputs import Inputs
+from piezo_sym.run.module import GeneratedModule
 
 #: Alignment of vectors, in bytes.
 ALIGNED = 64
@@ -49,9 +50,15 @@ def collocation_library(
     engine: Engine, stages: int, layout: Layout, *, lossy: bool = False
 ) -> ctypes.CDLL:
     """Return the library of a module's collocation steps with `stages` stages."""
-    step = read_source(engine.module, "_step.c")
-    sources = replace(engine.sources, step=step, stages=stages, layout=layout, lossy=lossy)
-    return shared_library(sources)
+    return shared_library(steps_of(engine.module, engine.sources, stages, layout, lossy=lossy))
+
+
+def steps_of(
+    module: GeneratedModule, functions: Sources, stages: int, layout: Layout, *, lossy: bool = False
+) -> Sources:
+    """Return the sources of a module's steps."""
+    step = read_source(module, "_step.c")
+    return replace(functions, step=step, stages=stages, layout=layout, lossy=lossy)
 
 
 def is_lossy(engine: Engine) -> bool:

@@ -42,12 +42,17 @@ OFFERED = ("initial_state", *_ROWS)
 
 def engine_of(module: GeneratedModule) -> Engine:
     """Return the compiled engine of a module, loaded from a file with its .c and .h beside it."""
-    sources = Sources(module.NAME, read_source(module, ".h"), read_source(module, ".c"))
+    sources = functions_of(module)
     environment = tuple(map(os.environ.get, ("CC", "PATH", CACHE, "HOME")))
     engine = _engine(module, sources, environment)  # type: ignore[arg-type]  # modules are hashable
     if isinstance(engine, EngineError):
         raise engine.with_traceback(None)
     return engine
+
+
+def functions_of(module: GeneratedModule) -> Sources:
+    """Return the sources of a module's functions."""
+    return Sources(module.NAME, read_source(module, ".h"), read_source(module, ".c"))
 
 
 @lru_cache(maxsize=64)
