@@ -116,7 +116,7 @@ def _print(report: Report) -> None:
         cells.append((row.id, row.element, row.statement, points, verdict))
     columns = ("property", "element", "statement", "points", "verdict")
     print_table(f"{report.model}: {report.summary()}", columns, cells)
-    for row in report.rows:
+    for row in sorted(report.rows, key=lambda row: not row.is_cause):
         if row.reason:
             console().print(_why(row), markup=False, highlight=False)
 

@@ -9,8 +9,6 @@ from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
 
-import sympy as sp
-
 from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
 from piezo_sym.expressions.text import spell
@@ -57,14 +55,13 @@ def divisors(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     """
     words = {port.name: port.ratio for _, port in iphs.circuit.of(Coupling)}
     words |= {str(slope.symbol.name): slope.law for slope in iphs.junction.slopes}
-    for divisor in iphs.junction.divisors:
-        yield _nonzero(divisor, words, assumptions)
+    forms = map(coefficient, iphs.junction.divisors)
+    for form in dict.fromkeys(f.arg if isinstance(f, Neg) else f for f in forms):
+        yield _nonzero(form, words, assumptions)
 
 
-def _nonzero(divisor: sp.Expr, words: Mapping[str, Expr], assumptions: Assumptions) -> Obligation:
+def _nonzero(form: Expr, words: Mapping[str, Expr], assumptions: Assumptions) -> Obligation:
     """State that a divisor of the junction laws is not zero."""
-    form = coefficient(divisor)
-    form = form.arg if isinstance(form, Neg) else form
     text = spell(form)
     short = text if len(text) <= MOST_TEXT else f"{text[: MOST_TEXT - 3]}..."
     statement = f"{short} != 0: the junction laws divide by it"

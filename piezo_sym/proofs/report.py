@@ -64,6 +64,11 @@ class Row:
         return f"{self.id} of {self.element}" if self.element else self.id
 
     @property
+    def is_cause(self) -> bool:
+        """Whether it is said before others: a wrong unit is often why other rows fail."""
+        return self.id == "units"
+
+    @property
     def why(self) -> str:
         """The reason, with the witness after its first part."""
         at = ", ".join(f"{name} = {value}" for name, value in (self.witness or {}).items())
@@ -116,7 +121,7 @@ class Report:
         return not self.failures
 
     def raise_if_not_proved(self) -> None:
-        """Raise on the first required property that is refuted, or else open for its own reasons.
+        """Raise on a required property: a unit, else one refuted, else open for its own reasons.
 
         Raises
         ------
@@ -124,12 +129,14 @@ class Report:
             Names the property, its witness or the reason why it is open.
         """
         if self.failures:
-            row = min(self.failures, key=lambda row: (row.verdict is Verdict.OPEN, row.waits))
+            row = min(
+                self.failures,
+                key=lambda row: (not row.is_cause, row.verdict is Verdict.OPEN, row.waits),
+            )
             what = f"{row.id} is {row.verdict.value}"
             where = f"{self.model}.{row.element}" if row.element else self.model
-            raise ProofError(
-                f"{what}: {row.why}", where, row.statement, "mend the law or the domain"
-            )
+            remedy = f"mend the law or the {'unit' if row.is_cause else 'domain'}"
+            raise ProofError(f"{what}: {row.why}", where, row.statement, remedy)
 
     def summary(self) -> str:
         """Return one line: how many rows have which verdict."""

@@ -86,7 +86,11 @@ def _other_kind(fault: Check, model: Model) -> str:
     if not fault.rule.whole or not fault.place.element or found is None:
         return ""
     kinds = with_ratio_in(found, model.elements[fault.place.element])
-    return "".join(f"; {with_article(kind.name)} takes {unit_text(found)}" for kind in kinds)
+    unit = _unit(fault.rule.left, fault.place, model).removeprefix("is ")
+    return "".join(
+        f"; {with_article(kind.name)} takes {unit}{second and f' on {second}'}"
+        for kind, second in kinds
+    )
 
 
 def _other_field(fault: Check, model: Model) -> str:
@@ -121,7 +125,10 @@ def _remedy(fault: Check, checks: tuple[Check, ...]) -> str:
     if not any(fits.values()):  # several names are wrong: consider only the rules with each name
         own = {name: [c for c in checks if _power(name, c)] for name in suspects}
         fits = {name: _fitting(name, own[name]) for name in suspects}
-    offers = [f"{name}: {unit_text(fit)} would fit" for name, fit in fits.items() if fit]
+    place, needed = fault.place, fault.rule.needed
+    spelled = {needed: place.unit} if fault.rule.whole and place.unit else {}
+    texts = {name: spelled.get(fit) or unit_text(fit) for name, fit in fits.items() if fit}
+    offers = [f"{name}: {text} would fit" for name, text in texts.items()]
     if offers:
         return f"check the unit of {', or of '.join(offers[:MOST_CANDIDATES])}"
     return _other_remedy(fault, checks)

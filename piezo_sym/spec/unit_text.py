@@ -53,8 +53,8 @@ QUANTITIES: Mapping[str, str] = {
     "m**2": "an area",
     "m**3/rad": "a displacement",
     "kg*m**2": "a moment of inertia",
-    "V*s/m": "a motor constant",
-    "V*s/rad": "a motor constant",
+    "N/A": "a motor constant",
+    "N*m/A": "a motor constant",
     "N*m/rad": "a torsional stiffness",
 }
 

@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 KEYS = ["model", "id", "element", "verdict", "witness", "reason"]
 
 
@@ -63,3 +65,61 @@ def test_no_line_is_wrapped_in_a_pipe(call, spec_file, monkeypatch):
 
 def test_one_model_that_is_not_proved_is_enough(call, unproved):
     assert call("verify", unproved, "piezo_stack").code == 1
+
+
+GYRATOR = """
+[model]
+name = "gyrator"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+I = { value = 1.0, unit = "kg*m**2" }
+K = { value = 3.0, unit = "N/A" }
+L = { value = 1e-3, unit = "H" }
+[elements]
+coil = { kind = "inductor", between = ["gnd", "a"], inductance = "L" }
+"""
+TRANSDUCER = """
+mass = { kind = "mass", at = "x", mass = "m" }
+k = { kind = "transducer", electrical = ["a", "gnd"], mechanical = ["x", "wall"], ratio = "K" }
+"""
+MOTOR = """
+rotor = { kind = "inertia", at = "x", inertia = "I" }
+k = { kind = "motor", electrical = ["a", "gnd"], rotation = ["x", "frame"], constant = "K" }
+"""
+WRONG = {
+    "a force per current": (
+        GYRATOR + TRANSDUCER,
+        "K is N/A, a transducer ratio [C/m] is needed; check the unit of K: C/m would fit; "
+        "a motor takes N/A",
+    ),
+    "a torque per current": (
+        GYRATOR.replace("N/A", "N*m/A") + TRANSDUCER,
+        "K is N*m/A, a transducer ratio [C/m] is needed; check the unit of K: C/m would fit; "
+        "a motor takes N*m/A on rotation",
+    ),
+    "a force that turns": (
+        GYRATOR + MOTOR,
+        "K is N/A, a motor constant [N*m/A] is needed; check the unit of K: N*m/A would fit; "
+        "a motor takes N/A on translation",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "said"), WRONG.values(), ids=WRONG)
+def test_a_ratio_of_another_unit_is_said_before_what_follows_from_it(call, tmp_path, text, said):
+    """That the ratio may be zero, and the two stores then are not one, is said after it."""
+    path = tmp_path / "gyrator.toml"
+    path.write_text(text)
+    table, _, why = call("verify", path).out.partition("program")
+    first, *others = why.splitlines()[2:]
+    field = "ratio" if "transducer" in said else "constant"
+    assert first == f"units of k: elements.k.{field}: {said}"
+    zero = "alpha_k != 0: the junction laws divide by it"
+    assert table.count(zero) == (field == "ratio")
+    assert others[:1] == ["welldef: K = 0; the condition 'K > 0' in [domain] mends it"] * (
+        field == "ratio"
+    )
+    for command in (("generate", path, "--out", tmp_path), ("simulate", path, "--duration", "1")):
+        answer = call(*command)
+        assert answer.code == 1
+        assert f"gyrator.k: units is REFUTED: elements.k.{field}: {said}; expected" in answer.err

@@ -66,7 +66,7 @@ def test_a_motor_turns_or_pushes(pairs, said):
 
 RATIOS = {
     "a transducer": ("transducer", "ratio", "N/A", "a transducer ratio [C/m] is needed", "a motor"),
-    "a voice coil": ("motor", "constant", "C/m", "a motor constant [V*s/m] is", "a transducer"),
+    "a voice coil": ("motor", "constant", "C/m", "a motor constant [N/A] is", "a transducer"),
 }
 
 

@@ -22,11 +22,15 @@ def kind_of(*role: Any) -> Kind:
     return next(kind for kind in TABLE if kind.form.role == role)
 
 
-def with_ratio_in(unit: Dimension, element: Element) -> Iterator[Kind]:
-    """Yield the kinds that couple the domains which `element` couples, by a ratio in `unit`."""
-    couplings = (port for port in element.ports("") if isinstance(port, Coupling))
-    pairs = [{port.first_domain, port.second_domain} for port in couplings]
-    for kind in TABLE:
-        for first, second, ratio_unit in kind.form.ratios:
-            if {first, second} in pairs and parse_unit(ratio_unit).dimension == unit:
-                yield kind
+def with_ratio_in(unit: Dimension, element: Element) -> Iterator[tuple[Kind, str]]:
+    """Yield the kinds that take a ratio in `unit` and couple a domain which `element` couples.
+
+    With each goes the name of its second domain if `element` does not couple that, else ''.
+    """
+    for port in (port for port in element.ports("") if isinstance(port, Coupling)):
+        own = {port.first_domain, port.second_domain}
+        for kind in TABLE:
+            for first, second, ratio_unit in kind.form.ratios:
+                alike = (first in own and first != second) or {first, second} == own
+                if alike and parse_unit(ratio_unit).dimension == unit:
+                    yield kind, "" if second in own else second.name

@@ -49,7 +49,7 @@ _TRANSDUCER = coupling(
     gyrates=True,
     warm=True,
 )
-_MOTOR = coupling("constant", "k", ELECTRICAL, (TRANSLATION, "V*s/m"), (ROTATION, "V*s/rad"))
+_MOTOR = coupling("constant", "k", ELECTRICAL, (TRANSLATION, "N/A"), (ROTATION, "N*m/A"))
 _RACK = coupling("radius", "r", TRANSLATION, (ROTATION, "m"))
 _CYLINDER = coupling("area", "A", HYDRAULIC, (TRANSLATION, "m**2"), gyrates=True)
 _PUMP = coupling("displacement", "D", ROTATION, (HYDRAULIC, "m**3/rad"), gyrates=True)
