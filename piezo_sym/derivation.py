@@ -12,7 +12,7 @@ throughout (`algebra.lanes`); `IPHS.expand` writes them out.
 """
 
 from piezo_sym.algebra.symbols import symbol_table
-from piezo_sym.errors import UsageError, quote
+from piezo_sym.errors import PiezoError, UsageError, quote
 from piezo_sym.iphs import IPHS, iphs_of
 from piezo_sym.network import junction_of
 from piezo_sym.spec.circuit import circuit_of
@@ -43,7 +43,12 @@ def derive(model: Model) -> IPHS:
     if not isinstance(model, Model):
         remedy = "load it first: derive(load('piezo_stack'))"
         raise UsageError(f"{quote(model)} is no Model", "derive", remedy=remedy)
-    circuit = circuit_of(model.flatten())
-    symbols = symbol_table(circuit)
-    junction = junction_of(circuit, symbols)
-    return iphs_of(symbols, junction)
+    flat = model.flatten()
+    try:
+        circuit = circuit_of(flat)
+        symbols = symbol_table(circuit)
+        junction = junction_of(circuit, symbols)
+        return iphs_of(symbols, junction)
+    except PiezoError as error:
+        flat.origins.put_in(error)
+        raise

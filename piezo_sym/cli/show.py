@@ -154,7 +154,8 @@ def _domain(iphs: IPHS) -> Iterator[str]:
 
     yield "\nDomain"
     for condition in iphs.circuit.conditions:
-        needs = "" if condition.where.startswith("domain.") else f"  ({condition.where})"
+        where = iphs.model.origins.written(condition.where)
+        needs = "" if condition.where.startswith("domain.") else f"  ({where})"
         yield f"  {condition_text(condition.tree)}{needs}"
 
 

@@ -76,7 +76,8 @@ def check_nodes(circuit: Circuit) -> None:
         if branch[0] == branch[1]:
             raise _short(circuit, element, branch[0])
         for node in branch:
-            _check_domain(node, domain, where, domains)
+            place = circuit.model.origins.node(where, node) or where
+            _check_domain(node, domain, place, domains)
             users.setdefault(node, []).append(element)
     _check_chains(circuit, users)
     for node, own in users.items():

@@ -30,7 +30,9 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.spec.elements import with_ratio_in
 from piezo_sym.spec.model import Model
+from piezo_sym.spec.origins import Origins
 from piezo_sym.spec.places import Place, places
+from piezo_sym.spec.rename import Renaming
 from piezo_sym.spec.tables import condition_text
 from piezo_sym.spec.unit_text import quantity, unit_text
 
@@ -48,35 +50,53 @@ class Check:
     rule: Match
     excess: Powers
     gap: Dimension
+    origins: Origins
+
+    @property
+    def where(self) -> str:
+        """Its place as the user wrote it."""
+        return self.origins.written(self.place.where)
+
+    def name(self, name: str) -> str:
+        """Return what a name is called there."""
+        return self.origins.name(self.place.where, name)
+
+    def text(self, node: Node) -> str:
+        """Return a term as the user spelled it there, shortened if it is long."""
+        bare = node.arg if isinstance(node, Neg) else node
+        text = condition_text(bare) if isinstance(bare, Cmp) else spell(bare)
+        text = Renaming({name: self.name(name) for name in names(bare)}).text(text)
+        return text if len(text) <= MOST_TERM else f"{text[: MOST_TERM - 3]}..."
 
 
 def units(iphs: IPHS) -> Iterator[Row]:
     """Yield one row if every unit fits, else a row for each fault."""
     model = iphs.model
     known = tuple(places(model))
-    checks = tuple(_check(place, rule) for place in known for rule in place.rules())
-    wrong = [_check(place, rule) for place in known for rule in faults(place.rules(), place.words)]
+    checks = tuple(_check(model, place, rule) for place in known for rule in place.rules())
+    found = ((place, rule) for place in known for rule in faults(place.rules(), place.words))
+    wrong = [_check(model, *fault) for fault in found]
     if not wrong:
         yield Row("units", "", STATEMENT, Verdict.PROVED)
     for fault in wrong:
         remedy = _remedy(fault, checks) + _other_kind(fault, model) + _other_field(fault, model)
-        reason = f"{fault.place.where}: {_finding(fault, model)}; {remedy}"
+        reason = f"{fault.where}: {_finding(fault, model)}; {remedy}"
         yield Row("units", fault.place.element, STATEMENT, Verdict.REFUTED, None, reason)
 
 
-def _check(place: Place, rule: Match) -> Check:
-    return Check(place, rule, rule.excess, rule.gap(place.words))
+def _check(model: Model, place: Place, rule: Match) -> Check:
+    return Check(place, rule, rule.excess, rule.gap(place.words), model.origins)
 
 
 def _finding(fault: Check, model: Model) -> str:
     """Return the fault in words: the smallest wrong term, its unit, and the unit needed."""
     rule = fault.rule
-    left = f"{_short(rule.left)} {_unit(rule.left, fault.place, model)}"
+    left = f"{fault.text(rule.left)} {_unit(rule.left, fault.place, model)}"
     if rule.right is not None:
-        right = f"{_short(rule.right)} {_unit(rule.right, fault.place, model)}"
-        return f"{left} and {right} in {_short(rule.node)}, equal units are needed"
+        right = f"{fault.text(rule.right)} {_unit(rule.right, fault.place, model)}"
+        return f"{left} and {right} in {fault.text(rule.node)}, equal units are needed"
     if not rule.whole:
-        return f"{left} in {_short(rule.node)}, a number without unit is needed"
+        return f"{left} in {fault.text(rule.node)}, a number without unit is needed"
     return f"{left}, {quantity(rule.needed, fault.place.unit)} is needed"
 
 
@@ -103,7 +123,7 @@ def _other_field(fault: Check, model: Model) -> str:
     for field, mark in marks.items():
         alike = own in marks and mark.units == marks[own].units
         if alike and parse_unit(mark.unit).dimension == found:
-            words, law = field.replace("_", " "), _short(fault.rule.left)
+            words, law = field.replace("_", " "), fault.text(fault.rule.left)
             return f'; or is it the {words} itself? then {field} = "{law}" instead of {own}'
     return ""
 
@@ -128,7 +148,7 @@ def _remedy(fault: Check, checks: tuple[Check, ...]) -> str:
     place, needed = fault.place, fault.rule.needed
     spelled = {needed: place.unit} if fault.rule.whole and place.unit else {}
     texts = {name: spelled.get(fit) or unit_text(fit) for name, fit in fits.items() if fit}
-    offers = [f"{name}: {text} would fit" for name, text in texts.items()]
+    offers = [f"{fault.name(name)}: {text} would fit" for name, text in texts.items()]
     if offers:
         return f"check the unit of {', or of '.join(offers[:MOST_CANDIDATES])}"
     return _other_remedy(fault, checks)
@@ -156,15 +176,16 @@ def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
         if part is not None and not names(part):
             unit = rule.needed if other is None else dimension(other, words)
             if unit and (factor := _factor(other)):
-                return f"make {_short(factor)} a parameter in {unit_text(times(NONE, unit, -1))}"
-            return f"make {_short(part)} a parameter in {unit_text(unit or NONE)}"
+                part, unit = factor, times(NONE, unit, -1)
+            return f"make {fault.text(part)} a parameter in {unit_text(unit or NONE)}"
     if isinstance(fault.place.tree, Sym) and fault.place.tree.name in fault.place.given:
         return _own_input(fault, fault.place.tree.name, checks)
     if rule.whole:
-        return f"multiply {_short(rule.left)} by {quantity(fault.gap)}{_numbers(rule.left)}"
+        more = _numbers(fault, rule.left)
+        return f"multiply {fault.text(rule.left)} by {quantity(fault.gap)}{more}"
     part, size = rule.right or rule.left, times(NONE, fault.gap, -1)
     verb = "divide" if rule.right is None else "multiply"
-    return f"{verb} {_short(part)} by {quantity(size)}{_numbers(part)}"
+    return f"{verb} {fault.text(part)} by {quantity(size)}{_numbers(fault, part)}"
 
 
 def _factor(term: Expr | None) -> Num | None:
@@ -182,23 +203,17 @@ def _factor(term: Expr | None) -> Num | None:
 def _own_input(fault: Check, name: str, checks: tuple[Check, ...]) -> str:
     """Return the remedy for an input, or a law that is one parameter, used with several units."""
     others = [
-        check.place.where
+        check.where
         for check in checks
         if check.place.tree == fault.place.tree and check.rule.needed != fault.rule.needed
     ]
     wanted = f"one in {unit_text(fault.rule.needed)} of its own here"
-    used = f"{name} is used in {', '.join(others)} with another unit; " if others else ""
+    own = fault.name(name)
+    used = f"{own} is used in {', '.join(others)} with another unit; " if others else ""
     return f"{used}give {wanted}"
 
 
-def _numbers(term: Expr) -> str:
+def _numbers(fault: Check, term: Expr) -> str:
     """Return the reminder, for a term with numbers, that these have no unit."""
     found = next((node for node in walk(term) if isinstance(node, Num) and node.value), None)
-    return f", or make {_short(found)} a parameter with its unit" if found else ""
-
-
-def _short(node: Node) -> str:
-    """Return a term as the user spelled it, shortened if it is long."""
-    bare = node.arg if isinstance(node, Neg) else node
-    text = condition_text(bare) if isinstance(bare, Cmp) else spell(bare)
-    return text if len(text) <= MOST_TERM else f"{text[: MOST_TERM - 3]}..."
+    return f", or make {fault.text(found)} a parameter with its unit" if found else ""

@@ -16,6 +16,7 @@ from pydantic import (
     Field,
     InstanceOf,
     PlainSerializer,
+    PrivateAttr,
     StrictStr,
     StringConstraints,
     WithJsonSchema,
@@ -25,6 +26,7 @@ from piezo_sym.expressions.units import Unit, parse_unit, to_si
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.elements.base import Frozen
 from piezo_sym.spec.elements.marks import Count, Ends, Node
+from piezo_sym.spec.origins import Origins
 from piezo_sym.spec.table import Table
 
 MAX_TEXT = 400
@@ -225,6 +227,13 @@ class Tables(Frozen):
     components: Table[Component] = Table()
     elements: Table[AnyElement] = Table()
     banks: Table[Bank] = Table()
+
+    _origins: Origins = PrivateAttr(Origins())
+
+    @property
+    def origins(self) -> Origins:
+        """Where the rows of a flat model were written."""
+        return self._origins
 
     @property
     def joined(self) -> dict[str, int]:

@@ -8,7 +8,7 @@ cells say which bank they are in: ``creep_spring`` of bank ``creep``, between ``
 own.
 """
 
-import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -22,27 +22,23 @@ from piezo_sym.spec.elements.base import Element
 from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.fields import Component, Tables
 from piezo_sym.spec.names import check_name
+from piezo_sym.spec.origins import Origin, Origins, Within
 from piezo_sym.spec.rename import Renaming
 from piezo_sym.spec.tables import bodies, states, temperatures
 
 #: About as many elements as fit into the text of a spec.
 MOST_ELEMENTS = 5_000
-PLACE = re.compile(r"(?:elements|parameters|inputs|initial)\.\w+|domain\.assume\[\d+\]")
-#: A name in a table, its value, and the place where the user wrote it.
-Row = tuple[str, Any, str]
+#: A name in a table, its value, and where the user wrote it.
+Row = tuple[str, Any, Origin]
 
 
 @final
 @dataclass(frozen=True)
 class Flat:
-    """The tables of a model without components, and the place of each row in the user's spec."""
+    """The tables of a model without components, and where the user wrote each row."""
 
     tables: dict[str, Any] = field(default_factory=dict)
-    origins: dict[str, str] = field(default_factory=dict)
-
-    def origin(self, where: str) -> str:
-        """Return a place as the user wrote it: ``components.left: elements.damper.force``."""
-        return PLACE.sub(lambda match: self.origins.get(match[0], match[0]), where, count=1)
+    origins: Origins = field(default_factory=Origins)
 
     def add(self, table: str, rows: Iterable[Row], *, over: bool = False) -> None:
         """Add rows to a table; a name that is there already is overwritten (`over`) or refused."""
@@ -50,9 +46,9 @@ class Flat:
         for name, value, written in rows:
             place = f"{table}.{name}"
             if name in present and not over:
-                what = f"would be called '{name}', like {self.origins[place]}"
-                raise SpecError(what, written, remedy="rename one of them, or the component")
-            present[name], self.origins[place] = value, written
+                what = f"would be called '{name}', like {self.origins.of(place).place}"
+                raise SpecError(what, written.place, remedy="rename one of them, or the component")
+            present[name], self.origins.rows[place] = value, written
 
 
 def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
@@ -76,7 +72,7 @@ def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
         check_component(spec, f"components.{part.name}", part.component, part.model)
     flat = Flat({"model": spec.model})
     for table in ("parameters", "inputs", "initial", "elements"):
-        own = [(name, row, f"{table}.{name}") for name, row in getattr(spec, table).items()]
+        own = [(name, row, Origin(f"{table}.{name}")) for name, row in getattr(spec, table).items()]
         theirs = [row for part in parts for row in part.rows(table)]
         first, last = (own, theirs) if table in ("parameters", "inputs") else (theirs, own)
         flat.add(table, first)
@@ -85,11 +81,10 @@ def flattened(spec: Tables, models: Iterable[Tables]) -> Flat:
     kept = ((part, e) for part in parts for e in part.kept.values())
     outside |= {part.node(node) for part, e in kept for _, node in e.named("node")}
     flat.add("elements", cells(spec, outside))
-    assumed = [(text, "") for text in spec.domain.assume]
+    assumed = [(text, Origin(f"domain.assume[{n}]")) for n, text in enumerate(spec.domain.assume)]
     assumed += [row for part in parts for row in part.assumed()]
     flat.tables["domain"] = {"assume": [text for text, _ in assumed]}
-    written = enumerate(where for _, where in assumed)
-    flat.origins.update({f"domain.assume[{n}]": where for n, where in written if where})
+    flat.origins.rows.update({f"domain.assume[{n}]": row[1] for n, row in enumerate(assumed)})
     return flat
 
 
@@ -108,7 +103,7 @@ class Part:
             if (new := self._row(table, name, row)) is not None:
                 names = self.renaming.words if table != "elements" else {}
                 new_name = names.get(name, f"{self.name}_{name}")
-                yield new_name, new, f"components.{self.name}: {table}.{name}"
+                yield new_name, new, self.origin(f"{table}.{name}")
 
     def _row(self, table: str, name: str, row: Any) -> Any:
         """Return a row of its model under new names, or None if the flat spec does not have it."""
@@ -123,12 +118,27 @@ class Part:
                 return None if name in {*self.component.inputs, *self.gone} else row
         return None if name in self.gone else self.renaming.start(row)
 
-    def assumed(self) -> Iterator[tuple[str, str]]:
-        """Yield the conditions of its domain that use nothing left out, and their places."""
+    def assumed(self) -> Iterator[tuple[str, Origin]]:
+        """Yield the conditions of its domain that use nothing left out, and their origins."""
         for n, text in enumerate(self.model.domain.assume):
             used = names(parse_condition(text, "domain.assume"))
             if self.gone.isdisjoint(used):
-                yield self.renaming.text(text), f"components.{self.name}: domain.assume[{n}]"
+                yield self.renaming.text(text), self.origin(f"domain.assume[{n}]")
+
+    def origin(self, row: str) -> Origin:
+        """Return where one of its rows was written."""
+        there = self.model.origins.of(row)
+        return Origin(f"{self._within.place}: {there.place}", (self._within, *there.within))
+
+    @cached_property
+    def _within(self) -> Within:
+        """Its place and its own names; a name of ours that it has several names for keeps ours."""
+        words, nodes = self.renaming.words, dict[str, str]()
+        given = Counter((*self.component.parameters.values(), *self.component.inputs.values()))
+        old = {words[word]: word for word in reversed([*words]) if given[words[word]] < 2}
+        for theirs, ours in self.component.nodes.items():
+            nodes[ours] = f"{nodes[ours]} and {theirs}" if ours in nodes else theirs
+        return Within(f"components.{self.name}", f"{self.name}.", old, nodes)
 
     @cached_property
     def kept(self) -> Mapping[str, Element]:
@@ -171,8 +181,8 @@ def inputs_of(elements: Iterable[Element]) -> set[str]:
     return {given for e in elements for _, given in e.named("input")}
 
 
-def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any], str]]:
-    """Yield the name, the fields and the place of each element of a cell.
+def cells(spec: Tables, outside: set[str]) -> Iterator[Row]:
+    """Yield the name, the fields and the origin of each element of a cell.
 
     Raises `SpecError` if a bank has no elements, or one that cannot be in a cell, or a node has two
     meanings.
@@ -196,7 +206,7 @@ def cells(spec: Tables, outside: set[str]) -> Iterator[tuple[str, dict[str, Any]
             if shared and element.row.form.joins(element):
                 more = {"count": table.count}  # those of all cells have one across variable
             fields = Renaming({}, node=node).fields(element, name)
-            yield f"{bank}_{name}", fields | more, place
+            yield f"{bank}_{name}", fields | more, Origin(place)
 
 
 def _check_cell_element(element: Element, place: str, where: str) -> None:

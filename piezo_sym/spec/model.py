@@ -89,10 +89,12 @@ class Model(Tables):
         models = (cast(Model, c.spec.model).flatten() for c in self.components.values())
         flat = flattened(self, models)
         try:
-            return Model(**flat.tables)
+            made = Model(**flat.tables)
         except PiezoError as error:
-            error.where = flat.origin(error.where)
+            flat.origins.put_in(error)
             raise
+        made._origins = flat.origins
+        return made
 
     @property
     def name(self) -> str:

@@ -327,7 +327,8 @@ REFUSED = {
     " be called 'one_d', like parameters.one_d; rename one of them, or the component",
     ONE
     + "[inputs]\none_F = { unit = 'N' }": "components.one: inputs.F: would be called 'one_F', l",
-    ONE + "[inputs]\none_d = { unit = 'N' }": "symbol 'one_d' is already that of parameters.one_d",
+    ONE
+    + "[inputs]\none_d = { unit = 'N' }": "'one_d' is already that of components.one: parameters.d",
     ONE
     + "[parameters]\none_q = { value = 1.0, unit = 'm' }": "components.one: elements.spring: sym"
     "bol 'one_q' is already that of parameters.one_q",
