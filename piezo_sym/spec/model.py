@@ -129,7 +129,11 @@ class Reader:
         key = real(path)
         if key in chain:
             names = " -> ".join(p.name for p in (*chain[chain.index(key) :], key))
-            raise SpecError(f"{quote(path.name)} is a component of itself: {names}")
+            remedy = (
+                f"leave it out of {quote(chain[-1].name)}, or move what both need to a third file"
+            )
+            what = f"{quote(path.name)} is a component of itself: {names}"
+            raise SpecError(what, expected="components without a cycle", remedy=remedy)
         if len(chain) > MOST_DEEP:
             expected = f"at most {MOST_DEEP} models around another"
             raise SpecError(f"{quote(path.name)} is too deep inside", expected=expected)

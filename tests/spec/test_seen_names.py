@@ -1,10 +1,13 @@
 """Which names a law may use: letters, parameters, states, temperatures; and what is refused."""
 
+import re
+
 import pytest
 from spec_tools import edited, refused_edit
 
-from piezo_sym import derive
+from piezo_sym import PiezoError, derive
 from piezo_sym.proofs import decide
+from piezo_sym.spec.load import parse
 
 VOLTAGE = 'voltage = "rho/(T - T_0)*deadzone(i, i_0)"'
 BODY = "[elements.ambient]\n"
@@ -108,6 +111,61 @@ state = "psi"
     message = refused_edit((BODY, other + BODY))
     assert "elements.second.voltage" in message
     assert "it is a state of bank 'hysteron', whose own laws alone have its lane" in message
+
+
+CELLS = """
+[model]
+name = "cells"
+[parameters]
+k = { value = 1.0, unit = "N/m" }
+m = { value = 1.0, unit = "kg" }
+d = { value = 1.0, unit = "N*s/m" }
+a = { value = 1.0, unit = "m" }
+T_0 = { value = 300.0, unit = "K" }
+[domain]
+assume = ["d >= 0", "a > 0"]
+[elements]
+ELEMENTS
+block = { kind = "mass", at = "tip", mass = "m" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S)" }
+[banks.creep]
+count = 3
+[banks.creep.elements]
+k_c = { kind = "spring", between = ["tip", "inner"], stiffness = "k", state = "s" }
+d_c = { kind = "damper", between = ["inner", "wall"], force = "d*v", heats = "body" }
+LANES
+"""
+DAMPER = """
+d_2 = { kind = "damper", between = ["tip", "wall"], force = "d*v*(1 + LAW**2)", heats = "body" }
+"""
+SPRING = 'k_2 = { kind = "spring", between = ["tip", "wall"], stiffness = "k", state = "z" }'
+
+
+def cells(elements, lanes=""):
+    return parse(CELLS.replace("ELEMENTS", elements).replace("LANES", lanes))
+
+
+def test_what_to_write_for_a_law_of_a_lane_does():
+    alone = "so that each lane has its own; or write the lanes as elements of their own"
+    damper = DAMPER.replace("LAW", "(s/a)")
+    with pytest.raises(PiezoError, match=r"move 'd_2' to \[banks\.creep\.elements\], " + alone):
+        cells(damper)
+    assert derive(cells("", damper)).model.elements["creep_d_2"].count == 3
+    damper, spring = DAMPER.replace("LAW", "(z/a)"), SPRING.replace("}", ", count = 2 }")
+    said = (
+        "put 'k_2' and 'd_2' into one cell, as the elements of [banks.k_2_cells] with count = 2, "
+    )
+    with pytest.raises(PiezoError, match=re.escape(said + alone)):
+        cells(damper + spring)
+    both = f"[banks.k_2_cells]\ncount = 2\n[banks.k_2_cells.elements]\n{SPRING}{damper}"
+    assert derive(cells("", both)).model.elements["k_2_cells_d_2"].count == 2
+
+
+def test_a_law_that_has_no_lanes_is_not_moved_into_a_cell():
+    lever = 'l = { kind = "lever", first = ["tip", "wall"], second = ["x", "wall"], ratio = "s/a" }'
+    with pytest.raises(PiezoError, match="lane; write the lanes as elements of their own") as error:
+        cells(lever)
+    assert "elements.l.ratio" in str(error.value)
 
 
 def test_a_lane_sees_its_own_state():

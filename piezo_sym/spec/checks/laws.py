@@ -203,8 +203,21 @@ def _state_in_law(spec: Tables, word: str, letters: tuple[str, ...], element: st
     if owner == element and letter in letters:
         return f"a law writes the state of its element as its letter, {quote(letter)}"
     if bank := bank_of(spec).get(owner):
-        return f"it is a state of bank {quote(bank)}, whose own laws alone have its lane"
+        why = f"it is a state of bank {quote(bank)}, whose own laws alone have its lane"
+        return f"{why}; {_beside_lane(spec, owner, bank, element)}"
     return f"it is the state of {quote(owner)}, which the law of a store cannot use"
+
+
+def _beside_lane(spec: Tables, owner: str, bank: str, element: str) -> str:
+    """Return how an element's law can use the state of `owner`, which is in a bank."""
+    alone = "write the lanes as elements of their own, without count"
+    if not spec.elements[element].row.form.has_lanes:
+        return alone
+    made = f"move {quote(element)} to [banks.{bank}.elements]"
+    if bank == owner:
+        cells = f"[banks.{owner}_cells] with count = {banks(spec)[bank]}"
+        made = f"put {quote(owner)} and {quote(element)} into one cell, as the elements of {cells}"
+    return f"{made}, so that each lane has its own; or {alone}"
 
 
 def _states_of_letter(spec: Tables, letter: str, words: Collection[str]) -> str:
