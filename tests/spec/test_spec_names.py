@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from spec_laws import steady
 from spec_tools import SHIPPED, edited, edited_text, refusal, refused_edit
 
+from piezo_sym import derive, verify
 from piezo_sym.errors import SpecError
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.names import check_name, check_symbol, fresh
@@ -180,11 +181,6 @@ def test_a_very_long_name_gives_a_short_message():
 @pytest.mark.parametrize(
     ("name", "use"),
     [
-        ("phi_1", "a lane of bank state 'phi'"),
-        ("phi_12", "a lane of bank state 'phi'"),
-        ("phi_j", "a lane of bank state 'phi'"),
-        ("i_hysteron_j", "a lane of bank 'hysteron'"),
-        ("V_hysteron_j", "a lane of bank 'hysteron'"),
         ("T_body", "the temperature of 'body'"),
         ("hysteron_count", "the size of bank 'hysteron'"),
         ("spring_count", "the size of bank 'spring'"),
@@ -206,6 +202,27 @@ def test_names_that_results_use_are_taken(table, name, use):
     assert f"symbol '{name}' is {use}; rename it" in message
 
 
+@pytest.mark.parametrize(
+    ("name", "lane", "offer"),
+    [
+        ("phi_1", "bank state 'phi'", "phi1"),
+        ("phi_12", "bank state 'phi'", "phi12"),
+        ("phi_j", "bank state 'phi'", "phij"),
+        ("i_hysteron_j", "bank 'hysteron'", "i_hysteronj"),
+        ("V_hysteron_2", "bank 'hysteron'", "V_hysteron2"),
+    ],
+)
+def test_lanes_are_taken_and_another_name_is_offered(name, lane, offer):
+    entry = '{ value = 1, unit = "1" }'
+    base = name.rpartition("_")[0]
+    message = refused_edit(("[inputs]", f"{name} = {entry}\n[inputs]"))
+    use = f"a lane of {lane}, called {base}_1, {base}_2 ... in results and equations"
+    assert f"symbol '{name}' is {use}; call it '{offer}'" in message
+    assert edited(("[inputs]", f"{offer} = {entry}\n[inputs]")).parameters[offer].value == 1.0
+    both = refused_edit(("[inputs]", f"{offer} = {entry}\n{name} = {entry}\n[inputs]"))
+    assert f"call it '{offer}a'" in both
+
+
 @pytest.mark.parametrize("name", ["L_1", "L_j"])
 def test_lanes_of_a_list_are_taken(name):
     message = refused_edit(
@@ -215,10 +232,23 @@ def test_lanes_of_a_list_are_taken(name):
     assert f"symbol '{name}' is a lane of 'L'" in message
 
 
-@pytest.mark.parametrize("name", ["phi_0x", "phi_jj", "L_1", "T_spring", "y_wall", "count", "U"])
+FREE = ["phi_0", "phi_01", "phi_0x", "phi_jj", "L_1", "T_spring", "y_wall", "count", "U"]
+
+
+@pytest.mark.parametrize("name", FREE)
 def test_names_beside_the_taken_ones_are_free(name):
     model = edited(("[inputs]", f'{name} = {{ value = 1, unit = "1" }}\n[inputs]'))
     assert model.parameters[name].value == 1.0
+
+
+def test_a_number_0_is_no_lane_as_lanes_are_counted_from_1():
+    law = 'voltage = "rho/(T - T_0)*deadzone(i, i_0)*(1 + (phi/phi_0)**2)"'
+    model = edited(
+        ('voltage = "rho/(T - T_0)*deadzone(i, i_0)"', law),
+        ("[inputs]", 'phi_0 = { value = 1, unit = "Wb" }\n[inputs]'),
+        ('"d >= 0"', '"d >= 0", "phi_0 > 0"'),
+    )
+    assert verify(derive(model)).proved
 
 
 @pytest.mark.parametrize("name", ["Spring", "SPRING", "Body"])

@@ -129,10 +129,14 @@ def _check_reserved(spec: Tables, symbols: list[tuple[str, str]]) -> None:
     lanes = {s: f"bank state '{s}'" for s in bank_states(spec)}
     lanes |= {p: f"'{p}'" for p, entry in spec.parameters.items() if isinstance(entry.value, tuple)}
     lanes |= {word: f"bank '{bank}'" for word, bank in _quantities(spec)}
+    taken = {symbol for symbol, _ in symbols}
     for symbol, where in symbols:
-        use = uses.get(symbol)
+        use, remedy = uses.get(symbol), "rename it"
         base, _, lane = symbol.rpartition("_")
-        if base in lanes and re.fullmatch(r"j|\d+", lane):
-            use = f"a lane of {lanes[base]}"
+        if base in lanes and re.fullmatch(r"j|[1-9]\d*", lane):  # lanes are counted from 1
+            use = f"a lane of {lanes[base]}, called {base}_1, {base}_2 ... in results and equations"
+            offers = (f"{base}{lane}{more}" for more in ("", "a", "b", "c"))
+            free = next((offer for offer in offers if offer not in taken), "")
+            remedy = f"call it '{free}'" if free else remedy
         if use:
-            raise SpecError(f"symbol {quote(symbol)} is {use}", where, remedy="rename it")
+            raise SpecError(f"symbol {quote(symbol)} is {use}", where, remedy=remedy)
