@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import sympy as sp
+from sympy.printing.str import StrPrinter
 
 #: Letters that are spelled in ASCII because the Greek word is a keyword.
 SPELLINGS = {"lam": r"\lambda"}
+ORDERED = (sp.StrictGreaterThan, sp.GreaterThan, sp.StrictLessThan, sp.LessThan)
 Entries = Mapping[tuple[int, int], sp.Expr]
 
 
@@ -32,7 +34,21 @@ def latex(expr: sp.Expr) -> str:
 
 def text(expr: sp.Expr) -> str:
     """Return one expression as plain text."""
-    return str(sp.sstr(_with_magnitudes(expr, sp.Function("abs"))))
+    plain = _with_magnitudes(expr, sp.Function("abs"))
+    known = {choice: _extreme(choice) for choice in plain.atoms(sp.Piecewise)}
+    return str(_Text().doprint(plain.xreplace(known)))
+
+
+@final
+class _Text(StrPrinter):  # type: ignore[misc]
+    """Writes choices as laws do: ``a if x > 0 else b``."""
+
+    def _print_Piecewise(self, choice: sp.Piecewise) -> str:
+        *cases, (last, always) = choice.args
+        if always != sp.true:
+            return str(super()._print_Piecewise(choice))
+        branches = (f"{self._print(value)} if {self._print(c)} else " for value, c in cases)
+        return f"({''.join(branches)}{self._print(last)})"
 
 
 def _with_magnitudes(expr: sp.Expr, magnitude: Any) -> sp.Expr:
@@ -54,6 +70,21 @@ def _named(choice: sp.Piecewise, magnitude: Any) -> sp.Expr | None:
     if signs and turned and (first, second) == (1, -1):
         return sp.sign(x, evaluate=False)
     return None
+
+
+def _extreme(choice: sp.Piecewise) -> sp.Expr:
+    """Return a choice as the larger or smaller of two, or a power of that and 0; else as it is."""
+    (first, condition), (second, other), *_ = choice.args
+    if other != sp.true or not isinstance(condition, ORDERED):
+        return choice
+    base, power = next((side for side in (first, second) if side != 0), first).as_base_exp()
+    if 0 in (first, second) and power.is_Integer and power > 0:
+        first, second = (sp.S.Zero if side == 0 else base for side in (first, second))
+    else:
+        power = sp.S.One
+    gap, size = sp.expand(first - second), sp.expand(condition.gts - condition.lts)
+    name = {size: "max", -size: "min"}.get(gap)
+    return sp.Function(name)(first, second) ** power if name else choice
 
 
 def symbol_latex(name: str) -> str:

@@ -84,7 +84,8 @@ def _where(element: Element) -> str:
     nodes = [(field, " - ".join(value)) for field, value in pairs if isinstance(value, tuple)]
     parts = [text if field == "between" else f"{field} {text}" for field, text in nodes]
     parts += [element.at] if hasattr(element, "at") else []
-    named = (row for row in element.named("thermal_mass", "input") if row[0] != "between")
+    listed = dict(nodes).keys()
+    named = (row for row in element.named("thermal_mass", "input") if row[0] not in listed)
     return ", ".join((*parts, *(f"{field} {name}" for field, name in named)))
 
 
@@ -100,7 +101,7 @@ def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
         plain = {word: value for word, value in used.items() if isinstance(value, float)}
         if len(plain) == len(used) and not isinstance(law.tree, Num):
             with suppress(ArithmeticError, ValueError):  # it has no value, which proofs report
-                text += f" = {evaluate(law.tree, plain):g} {law.mark.unit}"
+                text += f" = {evaluate(law.tree, plain):g} {law.mark.unit}".removesuffix(" 1")
         yield text
 
 
@@ -165,10 +166,10 @@ def _matrix(title: str, matrix: LaneMatrix) -> Iterator[str]:
 
 
 def _process(iphs: IPHS, k: int, name: str) -> Iterator[str]:
-    from piezo_sym.algebra.notation import slot_text, text
+    from piezo_sym.algebra.notation import joined, slot_text, text
 
     system, write = iphs.system, iphs.reading.write
-    pairs = " + ".join(
+    pairs = joined(
         f"{text(entry)} at ({slot_text(system.states[r])}, {slot_text(system.states[c])})"
         for (r, c), full, own in system.J(k).entries()
         for entry in (full, own)

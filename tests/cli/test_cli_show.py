@@ -38,6 +38,15 @@ def test_a_storage_shows_its_states_where_they_are_and_how_they_start(call):
     assert lines[place + 1].endswith("S = 0 (not said)")
 
 
+def test_no_body_is_named_twice_and_what_has_no_unit_shows_none(call):
+    lines = [" ".join(line.split()) for line in call("show", "peltier_cooler").out.splitlines()]
+    assert "couples thermoelectric b - gnd, bodies plate - sink seebeck = s = 0.05 V/K" in lines
+    lines = [" ".join(line.split()) for line in call("show", "amplified_stack").out.splitlines()]
+    assert "lever lever first tip - wall, second stack - wall ratio = n = 8" in lines
+    (energy,) = (line for line in lines if line.startswith("U = "))
+    assert " + k_e*max(-g + x_e, 0)**2/2 + " in energy
+
+
 def test_an_input_that_no_element_uses_is_said_to_be_so(call, spec_file):
     out = call("show", spec_file("[inputs]", '[inputs]\nF_2 = { unit = "N", doc = "pull" }')).out
     (unused,) = (line for line in out.splitlines() if "no element uses" in line)
