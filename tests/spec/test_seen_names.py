@@ -86,8 +86,8 @@ def test_the_only_body_has_both_names():
 
 def test_a_law_of_a_store_sees_no_other_state():
     message = refused_edit(('capacitance = "C"', 'capacitance = "C*(1 + q/q_l)"'))
-    assert "'q'" in message
-    assert "it is the state of 'spring', which the law of a store" in message
+    assert "the capacitance depends on 'q', and then is no energy of Q" in message
+    assert "in place of 'capacitor' and 'spring'" in message
 
 
 def test_a_law_sees_no_lane_of_a_bank():

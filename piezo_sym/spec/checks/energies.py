@@ -1,61 +1,122 @@
 """Energies of a spec: fields that go together, and laws of stores that depend on one state.
 
 A capacitor whose capacitance depends on a temperature has no energy of its charge alone, but one of
-its charge and the body's entropy, for which there is the kind `storage`.
+its charge and the body's entropy; an inductor whose inductance depends on a gap has one of its flux
+linkage and the gap.  For these there is the kind `storage`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import reduce
 
-from piezo_sym.errors import SpecError, quote
+from piezo_sym.errors import SpecError, listing, quote
 from piezo_sym.expressions.energies import antiderivative
+from piezo_sym.expressions.parse import parse_condition
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import names, replace
+from piezo_sym.expressions.tree import Cmp, Div, Expr, Mul, Sym, names, replace
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.fields import Tables
-from piezo_sym.spec.tables import temperatures
+from piezo_sym.spec.tables import bank_of, condition_text, states, temperatures
+
+ALONE = "let it depend on parameters and its own state"
+APART = "write lanes and dissipation apart from the store, which one storage can then replace"
 
 
 def check_energies(spec: Tables) -> None:
     """Check the fields and laws of elements that store energy."""
-    warm = temperatures(spec)
-    hot = {"T": next(iter(warm.values()), ""), **warm, **{f"T_{b}": b for b in warm.values()}}
     for name, element in spec.elements.items():
         if fault := element.row.form.fault(element):
             field, what, expected, remedy = fault
             raise SpecError(what, f"elements.{name}{field}", expected, remedy)
+    warm = temperatures(spec)
+    hot = {"T": next(iter(warm.values()), ""), **warm, **{f"T_{b}": b for b in warm.values()}}
+    owners = states(spec)
+    for name, element in spec.elements.items():
         for law in element.laws(name):
-            if element.letter and law.letters == (element.letter,) and not element.is_body:
-                _check_law(spec, law, hot)
+            own = {element.letter} if element.letter else {*getattr(element, "states", ())}
+            if own and own.issuperset(law.letters):
+                _check_law(spec, law, owners if element.is_body else owners | hot, hot)
 
 
-def _check_law(spec: Tables, law: LawField, hot: Mapping[str, str]) -> None:
-    """Refuse a law of a store that depends on a temperature; `hot` is the body of each."""
-    word = next((w for w in names(law.tree) if w in hot and w not in spec.parameters), "")
-    if not word:
+def _check_law(
+    spec: Tables, law: LawField, owners: Mapping[str, str], hot: Mapping[str, str]
+) -> None:
+    """Refuse a law of a store that depends on states of others; `owners` has their elements.
+
+    `hot` is the body of each temperature.
+    """
+    known = {*spec.parameters, *law.letters}
+    found = {w: owners[w] for w in names(law.tree) if w in owners and w not in known}
+    found = {word: other for word, other in found.items() if other != law.element}
+    if not found:
         return
-    name, letter = law.element, spec.elements[law.element].letter
-    what = f"the {law.field} depends on {quote(word)}, and then is no energy of {letter}"
-    remedy = "let it depend on parameters and its own state"
-    if hot[word]:
-        body = hot[word]
-        storage = _storage(spec, name, body, word)
-        remedy = f"give one energy of both states in place of '{name}' and '{body}': {storage}"
+    words, own = " and ".join(map(quote, found)), " and ".join(law.letters) or "its own state"
+    what = f"the {law.field} depends on {words}, and then is no energy of {own}"
+    remedy, parts = ALONE, tuple(dict.fromkeys((law.element, *found.values())))
+    if all(parts):
+        given = f"{listing(map(quote, parts[:-1]))} and {quote(parts[-1])}"
+        storage = _storage(spec, parts, hot)
+        remedy = f"give one energy of all their states in place of {given}: {storage}"
+        remedy = remedy if storage else f"{APART}; or {ALONE}"
     raise SpecError(what, law.where, "an energy of all states that it depends on", remedy)
 
 
-def _storage(spec: Tables, name: str, body: str, word: str) -> str:
-    """Return the text of a `storage` that has the energy of a store and of the body it names.
+def _storage(spec: Tables, parts: tuple[str, ...], hot: Mapping[str, str]) -> str:
+    """Return the text of a `storage` that has the energies of some stores and bodies; '' if none.
 
-    `word` is the temperature in the store's law; the body's own law is put in its place.
+    It has no lanes, no law beside its energy, and one entropy at most.  Laws of bodies take the
+    place of their temperatures, `hot`.
     """
-    (store,) = (p for p in spec.elements[name].ports(name) if isinstance(p, Storage))
-    heat = next(p for p in spec.elements[body].ports(body) if isinstance(p, Body))
-    law = replace(store.law, {word: heat.law})
-    stored, warm = antiderivative(law, store.state), antiderivative(heat.law, heat.state)
-    texts = (spell(part) if part else "<its energy>" for part in (stored, warm))
-    rate = store.domain.variable(store.imposes.other).name
-    nodes = ", ".join(f'"{node}"' for node in store.branch)
-    branch = f'{{ rate = "{rate}", between = [{nodes}] }}'
-    states = f'{{ {store.state} = {branch}, {heat.state} = {{ rate = "entropy" }} }}'
-    return f'{body} = {{ kind = "storage", energy = "{" + ".join(texts)}", states = {states} }}'
+    ports = {part: spec.elements[part].ports(part) for part in parts}
+    stores = {n: [p for p in own if isinstance(p, Storage | Body)] for n, own in ports.items()}
+    heated = {name: p for name, own in stores.items() for p in own if isinstance(p, Body)}
+    others = any(len(own) != len(stores[name]) for name, own in ports.items())
+    if others or len(heated) > 1 or not bank_of(spec).keys().isdisjoint(parts):
+        return ""
+    warm = {word: heated[body].law for word, body in hot.items() if body in heated}
+    energies = (_energy(own[0], warm) for own in stores.values())
+    energy = " + ".join(spell(found) if found else "<its energy>" for found in energies)
+    listed = ", ".join(f"{p.state} = {_state(p)}" for own in stores.values() for p in own)
+    name, needs = next(iter(heated), parts[0]), ", ".join(_needed(spec, parts, warm))
+    made = f'{name} = {{ kind = "storage", energy = "{energy}", states = {{ {listed} }} }}'
+    return f"{made}, and add to [domain]: {needs}" if needs else made
+
+
+def _needed(spec: Tables, parts: tuple[str, ...], warm: Mapping[str, Expr]) -> Iterator[str]:
+    """Yield the conditions that the kinds of elements need, and [domain] does not have."""
+    known = {parse_condition(text, "domain.assume") for text in spec.domain.assume}
+    free: set[Expr] = {Sym(symbol) for symbol in states(spec)}
+    for part in parts:
+        for condition in spec.elements[part].row.form.requires(spec.elements[part], part):
+            here = Cmp(condition.op, replace(condition.left, warm), condition.right)
+            if here not in known and here.left not in free:
+                yield quote(condition_text(here))
+
+
+def _energy(port: Storage | Body, warm: Mapping[str, Expr]) -> Expr | None:
+    """Return the energy of a store or body, with laws in place of temperatures, if it is found."""
+    given = port.energy is not None
+    found = port.energy if given else antiderivative(replace(port.law, warm), port.state)
+    if found is None:
+        return None
+    above, below = _factors(replace(found, warm) if given else found)
+    top = reduce(Mul, above)
+    return Div(top, reduce(Mul, below)) if below else top
+
+
+def _factors(node: Expr) -> tuple[list[Expr], list[Expr]]:
+    """Return the factors of the numerator and of the denominator: 1/(L/x) is x/L."""
+    if not isinstance(node, Mul | Div):
+        return [node], []
+    (above, below), (more, less) = _factors(node.left), _factors(node.right)
+    more, less = (less, more) if isinstance(node, Div) else (more, less)
+    return [*above, *more], [*below, *less]
+
+
+def _state(port: Storage | Body) -> str:
+    """Return the state of a port as a `storage` has it."""
+    if isinstance(port, Body):
+        return '{ rate = "entropy" }'
+    rate = port.domain.variable(port.imposes.other).name
+    nodes = ", ".join(f'"{node}"' for node in port.branch)
+    return f'{{ rate = "{rate}", between = [{nodes}] }}'

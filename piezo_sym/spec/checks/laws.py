@@ -177,8 +177,9 @@ def _check_words(
             expected = f"the letters {listing(letters)}" if letters else "parameters"
             if {*spec.inputs} <= {*words} and states(spec).keys() <= {*words}:
                 expected = "parameters, inputs, states and temperatures"
-            if not element:
-                remedy = _states_of_letter(spec, word, words)
+            if not remedy:
+                known = {*words, *states(spec)} if element else words
+                remedy = _states_of_letter(spec, word, known)
             raise SpecError(f"{quote(word)} has no meaning here", where, expected, remedy)
         if word in spec.inputs:
             what = f"{quote(word)} is an input, and this law sees none"
@@ -202,10 +203,12 @@ def _state_in_law(spec: Tables, word: str, letters: tuple[str, ...], element: st
     letter = spec.elements[owner].letter
     if owner == element and letter in letters:
         return f"a law writes the state of its element as its letter, {quote(letter)}"
+    if owner == element:
+        return "it is the state of the element itself, which this law cannot use"
     if bank := bank_of(spec).get(owner):
         why = f"it is a state of bank {quote(bank)}, whose own laws alone have its lane"
         return f"{why}; {_beside_lane(spec, owner, bank, element)}"
-    return f"it is the state of {quote(owner)}, which the law of a store cannot use"
+    return ""  # laws of stores with states of others are refused before, by `check_energies`
 
 
 def _beside_lane(spec: Tables, owner: str, bank: str, element: str) -> str:
