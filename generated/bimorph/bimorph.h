@@ -5,7 +5,7 @@
  * Model:   bimorph, spec sha256 e1bdc157e28404f3e3f2a5e6ecbc555574e7dfbd87761b8afc1f5ffdda416572
  * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
  *          rows, multiplied out; `piezo-sym show` prints the matrices
- * Proofs:  skew, casimir, welldef, temperature, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
+ * Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
  *          (rows of `piezo-sym verify`; what is PROVED holds for all states, inputs and
  *          parameters in the domain, and for banks of any size)
  *

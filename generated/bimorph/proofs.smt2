@@ -4,19 +4,6 @@
 ; a symbol with bounds on its values.  Names begin with a question mark.
 (set-logic QF_NRA)
 
-; welldef: s*l**3 != 0
-(push 1)
-(declare-const ?l Real)
-(declare-const ?s Real)
-(declare-const ?d Real)
-(declare-const ?eps Real)
-(assert (> ?l 0))
-(assert (> ?s 0))
-(assert (< (* 13 (* ?d ?d)) (* 16 ?s ?eps)))
-(assert (not (not (= (* ?s (* ?l ?l ?l)) 0))))
-(check-sat)
-(pop 1)
-
 ; temperature of beam: c_0 != 0
 (push 1)
 (declare-const ?c_0 Real)
@@ -71,6 +58,19 @@
 (assert (or (< ?exp_argument_1 0) (>= ?exp_1 (+ 1 ?exp_argument_1 (* (/ 1 2) (* ?exp_argument_1 ?exp_argument_1))))))
 (assert (or (>= ?exp_argument_1 1) (<= (* ?exp_1 (+ 1 (- ?exp_argument_1))) 1)))
 (assert (not (> (* ?T_0 ?exp_1 ?c_0) 0)))
+(check-sat)
+(pop 1)
+
+; welldef: s*l**3 != 0
+(push 1)
+(declare-const ?l Real)
+(declare-const ?s Real)
+(declare-const ?d Real)
+(declare-const ?eps Real)
+(assert (> ?l 0))
+(assert (> ?s 0))
+(assert (< (* 13 (* ?d ?d)) (* 16 ?s ?eps)))
+(assert (not (not (= (* ?s (* ?l ?l ?l)) 0))))
 (check-sat)
 (pop 1)
 

@@ -106,8 +106,8 @@ def obligations(iphs: IPHS) -> tuple[Obligation, ...]:
 
 def _obligations(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
     yield from (balances.skew(iphs), balances.casimir(iphs))
+    yield from bodies.temperature(iphs, assumptions)  # rests on no row
     yield from domain_defined(iphs, assumptions)
-    yield from bodies.temperature(iphs, assumptions)
     yield from divisors(iphs, assumptions)
     yield from (balances.energy(iphs, assumptions), balances.entropy(iphs))
     for element, own in groupby(laws.laws_of(iphs), key=lambda law: law.element):
