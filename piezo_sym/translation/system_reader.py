@@ -17,8 +17,9 @@ from piezo_sym.algebra.sums import SymbolicLaneSum
 from piezo_sym.algebra.symbols import Raised
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.tree import Cmp, Expr, Num, names, walk
+from piezo_sym.expressions.tree import Cmp, Expr, If, Num, names, walk
 from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.branches import value_conditions
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import bank_states, laws, states
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
@@ -92,8 +93,16 @@ class SystemReader:
             return [self._margin(condition, letters) for condition in given]
 
     def law(self, law: Expr) -> Value:
-        """Return a law, nothing taken as true."""
+        """Return a law, nothing taken as true.
+
+        What it divides by as it is written is needed, too: row welldef shows that it is not zero,
+        and SymPy turns phi/(L/(1 + phi**2)) into a product.
+        """
+        divisors = () if any(isinstance(n, If) for n in walk(law)) else value_conditions(law)
         with self._outside("integrands", law) as letters:
+            for condition in divisors:
+                if condition.op == "!=":
+                    power(self(self.iphs.symbols.law(condition.left, letters)), -1)
             return self(self.iphs.symbols.law(law, letters))
 
     @contextmanager

@@ -1,10 +1,14 @@
 """Coils, capacitors and bodies as users write them: what holds is PROVED, near misses are not."""
 
+import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
-from piezo_sym import derive
+from piezo_sym import derive, simulate, verify
+from piezo_sym.codegen.template import template_of
 from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse
+from piezo_sym.translation import program_row
 
 SPEC = """
 [model]
@@ -18,6 +22,7 @@ c = {{ value = 2.0, unit = "J/K" }}
 T_0 = {{ value = 300.0, unit = "K" }}
 phi_s = {{ value = 1.0, unit = "Wb" }}
 i_s = {{ value = 1.0, unit = "A" }}
+a = {{ value = 1.0, unit = "1/Wb**2" }}
 [domain]
 assume = {assumed}
 [initial]
@@ -54,3 +59,52 @@ def test_a_condition_rests_on_the_temperatures_in_it():
     found = rows(circuit("2 + S/c > 0", "(S/c)**2 > -1", body="T_0*(1 + S/c)"))
     assert found["temperature", "body"].verdict is Verdict.REFUTED
     assert found["welldef", ""].verdict is Verdict.OPEN
+
+
+@pytest.mark.some(2)
+@pytest.mark.parametrize(
+    "law",
+    [
+        'inductance = "L/(1 + (phi/phi_s)**6)"',
+        'inductance = "L/(1 + a*phi**2)"',
+        'inductance = "L*(1/(1 + (phi/phi_s)**10))"',
+        'current = "phi/(L/(1 + a*phi**2))"',
+    ],
+)
+def test_coils_that_saturate_are_proved(law):
+    verify(derive(circuit("phi_s > 0", "a > 0", "L > 0", coil=law))).raise_if_not_proved()
+
+
+@pytest.mark.parametrize("size", ["L/(1 - (phi/phi_s)**6)", "L/(1 + a*phi**2)"])
+def test_a_size_that_may_have_no_value_or_sign_is_not_proved(size):
+    model = circuit("phi_s > 0", coil=f'inductance = "{size}"')
+    ids = [row.id for row in verify(derive(model)).rows if row.verdict is not Verdict.PROVED]
+    assert "welldef" in ids
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("power_6_of(phi/phi_s)", "power_6_of(phi)"), ("phi/(L", "phi*phi/phi/(L")]
+)
+def test_a_step_of_another_coil_is_not_proved(old, new):
+    iphs = derive(circuit("phi_s > 0", coil='inductance = "L/(1 + (phi/phi_s)**6)"'))
+    texts = dict(template_of(iphs).filled(iphs.model.model_dump()))
+    assert program_row(iphs, texts, ["_step.c"]).verdict is Verdict.PROVED
+    wanted = texts["_step.c"]
+    place = wanted.index(old, wanted.index("_integrands(const real"))
+    texts["_step.c"] = wanted[:place] + wanted[place:].replace(old, new, 1)
+    assert program_row(iphs, texts, ["_step.c"]).verdict is not Verdict.PROVED
+
+
+def test_a_coil_that_saturates_runs_as_rates_by_hand():
+    def rates(_, x):
+        phi, Q, S = x
+        i = phi * (1 + phi**6) / 0.5
+        return [Q / 0.1 - 2 * i, -i, 2 * i * i / (300 * np.exp(S / 2))]
+
+    model = circuit("phi_s > 0", coil='inductance = "L/(1 + (phi/phi_s)**6)"')
+    run = simulate(model, duration=1.0, rtol=1e-10, times=[0.0, 1.0])
+    own = [float(run[name][-1]) for name in ("phi", "Q", "S")]
+    by_hand = solve_ivp(rates, (0, 1), (0.9, 0, 0), "Radau", rtol=1e-10, atol=1e-13)
+    assert np.allclose(own, by_hand.y[:, -1], rtol=1e-8, atol=1e-9)
+    assert float(np.abs(run.energy_residual).max()) <= 1e-14 * 600
+    assert float(np.abs(run.entropy_residual).max()) <= 1e-14
