@@ -202,8 +202,21 @@ def _failure(question: Question, solver: SolverLike) -> Finding | None:
             return None
         if answer.result == "sat":
             found = checked_model(question, answer, shown)
-            return (Verdict.OPEN, None, f"{found[2]}; {GIVE}") if question.derived else found
+            return (Verdict.OPEN, None, _of_derived(question, found)) if question.derived else found
     return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
+
+
+def _of_derived(question: Question, found: Finding) -> str:
+    """Return why a question about an integrated energy is open, and what to write."""
+    _, witness, reason = found
+    if witness is None or question.law is None or question.branch:
+        return f"{reason}; {GIVE}"
+    bound = condition_text(question.original)
+    at = ", ".join(f"{name} = {value}" for name, value in witness.items())
+    return (
+        f"the law's energy that was found has no value at {at}, where '{bound}' does not hold: add "
+        f"that to [domain], or give the law's energy, energy = '...'"
+    )
 
 
 def _mending_condition(sign: SignOf, questions: tuple[Question, ...], solver: SolverLike) -> str:

@@ -1,11 +1,14 @@
 """Coils, capacitors and bodies as users write them: what holds is PROVED, near misses are not."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from piezo_sym import derive, simulate, verify
 from piezo_sym.codegen.template import template_of
+from piezo_sym.expressions.parse import parse_law
 from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse
 from piezo_sym.translation import program_row
@@ -108,3 +111,51 @@ def test_a_coil_that_saturates_runs_as_rates_by_hand():
     assert np.allclose(own, by_hand.y[:, -1], rtol=1e-8, atol=1e-9)
     assert float(np.abs(run.energy_residual).max()) <= 1e-14 * 600
     assert float(np.abs(run.entropy_residual).max()) <= 1e-14
+
+
+@pytest.mark.some(3)
+@pytest.mark.parametrize(
+    ("law", "assumed"),
+    [
+        ("i_s*phi/(phi_s - abs(phi))", ("phi_s - abs(phi) > 0",)),
+        ("i_s*log((phi_s + phi)/(phi_s - phi))", ("phi_s - abs(phi) > 0",)),
+        ("i_s*log((phi_s + phi)/(phi_s - phi))", ("phi_s - phi > 0", "phi_s + phi > 0")),
+        ("i_s*phi/(phi_s - phi)", ("phi < phi_s",)),
+        ("i_s*phi_s/(2*phi_s + phi)", ("phi > -2*phi_s",)),
+    ],
+)
+def test_an_energy_with_logarithms_has_them_of_what_is_positive(law, assumed):
+    report = verify(derive(circuit(*assumed, "i_s > 0", coil=f'current = "{law}"')))
+    report.raise_if_not_proved()
+
+
+@pytest.mark.parametrize(
+    ("law", "assumed", "needed"),
+    [
+        ("i_s*phi/(phi_s - phi)", "(phi_s - phi)**2 > 0", "-phi + phi_s > 0"),
+        (
+            "i_s*phi*phi_s/(phi_s**2 - phi**2)",
+            "abs(phi_s**2 - phi**2) > 0",
+            "-phi**2 + phi_s**2 > 0",
+        ),
+    ],
+)
+def test_an_energy_without_a_value_says_what_to_write(law, assumed, needed):
+    row = rows(circuit(assumed, coil=f'current = "{law}"'))["welldef", "coil"]
+    assert row.verdict is Verdict.OPEN
+    assert f"'{needed}' does not hold: add that to [domain], or give the law's energy" in row.reason
+    assert "has no value at phi_s = " in row.reason
+
+
+@pytest.mark.parametrize(
+    "energy", ["-i_s*(phi + phi_s*log(phi_s - phi/2))", "-i_s*(2*phi + phi_s*log(phi_s - phi))"]
+)
+def test_a_wrong_energy_is_not_that_of_its_law(energy):
+    """The integral is replaced in the derived system, as SymPy's might be wrong."""
+    iphs = derive(circuit("phi < phi_s", coil='current = "i_s*phi/(phi_s - phi)"'))
+    first, *others = iphs.energies
+    wrong = dataclasses.replace(first, law=parse_law(energy, "energy"))
+    found = {
+        row.id: row for row in decide(dataclasses.replace(iphs, energies=(wrong, *others))).rows
+    }
+    assert found["energy"].verdict is Verdict.OPEN
