@@ -64,7 +64,8 @@ def claim_of(probe: Probe, id_: str, element: str) -> Claim | None:
     """Return the claim of a row, or None if it cannot be evaluated at a point."""
     circuit = probe.iphs.circuit
     ports = circuit.by_element.get(element)
-    match id_, ports[-1] if ports else None:
+    # of a storage, whichever of its states the entropy is
+    match id_, circuit.bodies.get(element) or (ports[-1] if ports else None):
         case (("passive" | "conductance"), DissipativePort()):
             heat = Sym(f"heat {element}")
             size = Mul(*(probe.law(what, element)[0] for what in ("output", "effort")))

@@ -9,6 +9,7 @@ from functools import reduce
 
 from piezo_sym.errors import STICKING
 from piezo_sym.expressions.calculus import mul
+from piezo_sym.expressions.tidying import tidied
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Mul, Neg, names
 from piezo_sym.network import slope_of
 from piezo_sym.spec.tables import condition_text
@@ -33,6 +34,14 @@ def mending(law: Expr, letter: str, shown: Shown) -> str:
     if not any(map(names, kept)):
         return ""
     return condition_text(Cmp(">=", reduce(mul, kept), ZERO))
+
+
+def without_factors(claim: Cmp, positive: Callable[[Expr], bool]) -> Cmp:
+    """Return a claim that a product is positive, or not negative, about its other factors alone."""
+    if claim.op not in {">", ">="} or claim.right != ZERO:
+        return claim
+    kept = [f for f in _factors(claim.left) if not positive(f)] or [claim.left]
+    return Cmp(claim.op, tidied(reduce(mul, kept)), ZERO)
 
 
 def _factors(law: Expr) -> Iterator[Expr]:

@@ -18,13 +18,14 @@ from piezo_sym.proofs.asked import Domain, simple_counterexample
 from piezo_sym.proofs.continuity import neighbour_questions
 from piezo_sym.proofs.domain import spec_points
 from piezo_sym.proofs.laws import branch_questions
-from piezo_sym.proofs.mending import mending
+from piezo_sym.proofs.mending import mending, without_factors
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.refutation import Finding, beside_own_values, checked_model, refutation
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import SolverLike, opinions
+from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import condition_text
 
 #: Size of banks in a refutation by algebra: with one lane, coupling between lanes would not show.
@@ -32,10 +33,12 @@ LANES = 2
 #: First values that the symbols of a residual are given.
 STARTS = (1, 2, 3)
 LOOSE = "the domain may bound what drives the element, in a way that is not looked at"
-#: Rows whose questions may be about parameters and inputs alone.
-DECLARED = frozenset({"welldef", "exergy", "environment"})
+#: Rows whose questions may be about what [domain] can bound.
+DECLARED = frozenset({"welldef", "temperature", "exergy", "environment"})
 #: The remedy where an integrated energy is not shown to belong to its law.
 GIVE = "the law's energy that was found could not be verified: give it, energy = '...'"
+#: Of a temperature whose law is longer, a condition has the name.
+MOST_TEXT = 24
 #: Open questions of an obligation after which no more are asked.
 MOST_OPEN = 4
 
@@ -65,7 +68,7 @@ def prove(
     if verdict is Verdict.REFUTED and obligation.sign:
         reason += _mending_condition(obligation.sign, obligation.questions, solver)
     if verdict is Verdict.REFUTED and obligation.id in DECLARED:
-        reason += _parameter_conditions(obligation.questions, iphs, solver)
+        reason += _domain_conditions(obligation.questions, iphs, solver)
     return Row(
         obligation.id,
         obligation.element,
@@ -231,16 +234,17 @@ def _mending_condition(sign: SignOf, questions: tuple[Question, ...], solver: So
     return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
 
 
-def _parameter_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: SolverLike) -> str:
-    """Return conditions on parameters and inputs, such as n > 0, under which all claims hold.
+def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: SolverLike) -> str:
+    """Return conditions for [domain], such as n > 0, under which all claims hold, or ''.
 
-    The spec's own values satisfy them; they decide between > 0 and < 0 for a claim ``!= 0``.
+    They are about parameters, inputs, states and temperatures.  The spec's own values satisfy them,
+    and decide between > 0 and < 0 for a claim ``!= 0``.
     """
-    known = iphs.model.parameters.keys() | iphs.model.inputs.keys()
+    points, known = spec_points(iphs), frozenset[str]()
+    known = known.union(*points)
     broken = [q.original for q in questions if _failure(q, solver)]
-    if not all(names(claim.left) and known >= {*names(claim.left)} for claim in broken):
+    if not all(names(claim) and known >= {*names(claim)} for claim in broken):
         return ""
-    points = spec_points(iphs)
 
     def kept(conditions: tuple[Cmp, ...]) -> bool:
         return all(all_hold(conditions, point) for point in points)
@@ -249,15 +253,24 @@ def _parameter_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: S
         within = (replace(q, where=(*conditions, *q.where)) for q in questions)
         return kept(conditions) and _first_failure(within, solver) is None
 
-    found: tuple[Cmp, ...] = ()
-    for claim in broken:
+    def positive(part: Expr) -> bool:
+        claim = Cmp(">", part, ZERO)
+        where = (*found, *questions[0].where)
+        return _failure(Question("", questions[0].order, where, claim, claim), solver) is None
+
+    found, bodies = dict[Cmp, str](), [port for _, port in iphs.circuit.of(Body)]
+    for claim in sorted(broken, key=lambda claim: len(names(claim))):
         ops = (">", "<") if claim.op == "!=" else (claim.op,)
-        ways = (Cmp(op, claim.left, claim.right) for op in ops)
-        found += tuple(way for way in ways if kept((way,)) and way not in found)[:1]
-    if not found or not mended(found):
+        ways = (without_factors(Cmp(op, claim.left, claim.right), positive) for op in ops)
+        for way in [way for way in ways if kept((way,)) and way not in found][:1]:
+            warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
+            text = condition_text(way)
+            found[way] = warm[0] if warm and len(text) > MOST_TEXT else text
+    if not found or not mended((*found,)):
         return ""
-    for claim in found:  # leave out conditions that the others imply
+    for claim in tuple(found):  # leave out conditions that the others imply
         rest = tuple(c for c in found if c != claim)
-        found = rest if rest and mended(rest) else found
-    said, many = " and ".join(f"'{condition_text(claim)}'" for claim in found), len(found) > 1
+        if rest and mended(rest):
+            del found[claim]
+    said, many = " and ".join(f"'{text}'" for text in found.values()), len(found) > 1
     return f"; the condition{'s' * many} {said} in [domain] mend{'' if many else 's'} it"

@@ -17,7 +17,7 @@ from piezo_sym.algebra.sums import SymbolicLaneSum
 from piezo_sym.algebra.symbols import Raised
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.tree import Cmp, Expr, If, Num, names, walk
+from piezo_sym.expressions.tree import Cmp, Expr, If, Num, Sym, names, walk
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.branches import value_conditions
 from piezo_sym.spec.elements.ports import Body
@@ -90,20 +90,27 @@ class SystemReader:
         """Return the margins of some conditions, of which nothing is taken as true."""
         given = list(given)
         with self._outside("margins", *given) as letters:
+            for condition in given:
+                self._divide(condition, letters)
             return [self._margin(condition, letters) for condition in given]
 
     def law(self, law: Expr) -> Value:
-        """Return a law, nothing taken as true.
-
-        What it divides by as it is written is needed, too: row welldef shows that it is not zero,
-        and SymPy turns phi/(L/(1 + phi**2)) into a product.
-        """
-        divisors = () if any(isinstance(n, If) for n in walk(law)) else value_conditions(law)
+        """Return a law, nothing taken as true."""
         with self._outside("integrands", law) as letters:
-            for condition in divisors:
-                if condition.op == "!=":
-                    power(self(self.iphs.symbols.law(condition.left, letters)), -1)
+            self._divide(law, letters)
             return self(self.iphs.symbols.law(law, letters))
+
+    def _divide(self, tree: Expr | Cmp, letters: Mapping[str, sp.Symbol]) -> None:
+        """Note what a tree, and a temperature in it, divides by as it is written, without choices.
+
+        Rows welldef show that it is not zero, and SymPy turns phi/(L/(1 + phi**2)) into a product.
+        """
+        bodies = {Sym(port.temperature): port.law for _, port in self.iphs.circuit.of(Body)}
+        found = [tree, *(law for word, law in bodies.items() if word in walk(tree))]
+        smooth = [t for t in found if not any(isinstance(n, If) for n in walk(t))]
+        for condition in (c for t in smooth for c in value_conditions(t)):
+            if condition.op == "!=":
+                power(self(self.iphs.symbols.law(condition.left, letters)), -1)
 
     @contextmanager
     def _outside(self, function: str, *trees: Expr | Cmp) -> Iterator[Mapping[str, sp.Symbol]]:

@@ -91,12 +91,13 @@ def refusal(text):
 def followed(text, said):
     """Return a spec with what was said done to it: elements replaced, and conditions added."""
     *first, last = re.search(r"in place of (.*): \w+ = \{", said)[1].split(" and ")
-    made = re.search(r"place of [^:]*: (.* \})(?:, and add to \[domain\]: |$)", said)[1]
+    made = re.search(r"place of [^:]*: (.* \})(?:, and add to assume in \[domain\]: |$)", said)[1]
     for gone in re.findall(r"\w+", " ".join((*first, last))):
         text = re.sub(rf"(?m)^{gone} = .*\n", "", text)
-    _, _, more = said.partition("add to [domain]: ")
-    conditions = more.replace("'", '"')
-    return text.replace('"R >= 0"', f'"R >= 0", {conditions}' * bool(more) or '"R >= 0"') + made
+    conditions = said.partition("add to assume in [domain]: ")[2]
+    return (
+        text.replace('"R >= 0"', f'"R >= 0", {conditions}' * bool(conditions) or '"R >= 0"') + made
+    )
 
 
 @pytest.mark.parametrize(("edit", "name", "energy", "states"), CASES.values(), ids=CASES)
@@ -115,7 +116,7 @@ def test_a_magnet_that_was_made_of_the_advice_is_proved():
     text = SPEC.replace(*GAP)
     said = refusal(text)
     assert said.startswith("spec: elements.coil.inductance: the inductance depends on 'x', and ")
-    assert said.endswith("add to [domain]: 'L_0*x_0/(x_0 + x) > 0', 'k > 0'")
+    assert said.endswith('add to assume in [domain]: "L_0*x_0/(x_0 + x) > 0", "k > 0"')
     assert verify(derive(parse(followed(text, said)))).proved
 
 

@@ -5,14 +5,14 @@ its charge and the body's entropy; an inductor whose inductance depends on a gap
 linkage and the gap.  For these there is the kind `storage`.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import reduce
 
 from piezo_sym.errors import SpecError, listing, quote
 from piezo_sym.expressions.energies import antiderivative
 from piezo_sym.expressions.parse import parse_condition
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, Div, Expr, Mul, Sym, names, replace
+from piezo_sym.expressions.tree import ZERO, Cmp, Div, Expr, Mul, Sym, names, replace, walk
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.fields import Tables
@@ -77,20 +77,32 @@ def _storage(spec: Tables, parts: tuple[str, ...], hot: Mapping[str, str]) -> st
     energies = (_energy(own[0], warm) for own in stores.values())
     energy = " + ".join(spell(found) if found else "<its energy>" for found in energies)
     listed = ", ".join(f"{p.state} = {_state(p)}" for own in stores.values() for p in own)
-    name, needs = next(iter(heated), parts[0]), ", ".join(_needed(spec, parts, warm))
+    name, laws = next(iter(heated), parts[0]), [p.law for own in stores.values() for p in own]
+    needs = ", ".join(f'"{condition_text(c)}"' for c in _needed(spec, parts, laws, warm))
     made = f'{name} = {{ kind = "storage", energy = "{energy}", states = {{ {listed} }} }}'
-    return f"{made}, and add to [domain]: {needs}" if needs else made
+    return f"{made}, and add to assume in [domain]: {needs}" if needs else made
 
 
-def _needed(spec: Tables, parts: tuple[str, ...], warm: Mapping[str, Expr]) -> Iterator[str]:
-    """Yield the conditions that the kinds of elements need, and [domain] does not have."""
+def _needed(
+    spec: Tables, parts: tuple[str, ...], laws: Iterable[Expr], warm: Mapping[str, Expr]
+) -> Iterator[Cmp]:
+    """Yield what [domain] has to say, besides what it says: what the kinds of elements need.
+
+    With a body also that divisors are positive, inner ones first, and that its temperature is,
+    which depends on the states of the stores then. Where a law is affine in it, it rises with the
+    entropy.
+    """
     known = {parse_condition(text, "domain.assume") for text in spec.domain.assume}
     free: set[Expr] = {Sym(symbol) for symbol in states(spec)}
-    for part in parts:
-        for condition in spec.elements[part].row.form.requires(spec.elements[part], part):
-            here = Cmp(condition.op, replace(condition.left, warm), condition.right)
-            if here not in known and here.left not in free:
-                yield quote(condition_text(here))
+    needed = [c for n in parts for c in spec.elements[n].row.form.requires(spec.elements[n], n)]
+    if warm:
+        trees = [n for law in laws for n in reversed([*walk(replace(law, warm))])]
+        needed += [Cmp(">", node.right, ZERO) for node in trees if isinstance(node, Div)]
+    needed = [Cmp(c.op, replace(c.left, warm), c.right) for c in needed]
+    needed += [Cmp(">", Sym(f"T_{n}"), ZERO) for n in parts if spec.elements[n].is_body]
+    for condition in dict.fromkeys(needed):
+        if condition not in known and condition.left not in free and names(condition):
+            yield condition
 
 
 def _energy(port: Storage | Body, warm: Mapping[str, Expr]) -> Expr | None:

@@ -1,0 +1,137 @@
+"""Remedies that messages show, put into the spec as they stand: all rows are PROVED with them."""
+
+import re
+
+import pytest
+
+from piezo_sym import PiezoError, derive, verify
+from piezo_sym.proofs import Verdict, decide
+from piezo_sym.spec.load import parse
+
+SPEC = """
+[model]
+name = "circuit"
+[parameters]
+L = { value = 0.5, unit = "H" }
+C = { value = 0.1, unit = "F" }
+R = { value = 2.0, unit = "ohm" }
+c = { value = 2.0, unit = "J/K" }
+T_0 = { value = 300.0, unit = "K" }
+al = { value = 1e-3, unit = "1/K" }
+k = { value = 5.0, unit = "N/m" }
+m = { value = 0.1, unit = "kg" }
+x_0 = { value = 1.0, unit = "m" }
+phi_s = { value = 1.0, unit = "Wb" }
+i_s = { value = 1.0, unit = "A" }
+[domain]
+assume = ["R >= 0"]
+[elements]
+coil = { kind = "inductor", between = ["a", "gnd"], inductance = "L", state = "phi" }
+cap = { kind = "capacitor", between = ["a", "b"], capacitance = "C", state = "Q" }
+res = { kind = "resistor", between = ["b", "gnd"], voltage = "R*i", heats = "body" }
+spring = { kind = "spring", between = ["tip", "wall"], stiffness = "k", state = "q" }
+mass = { kind = "mass", at = "tip", mass = "m" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+"""
+HEATED = """
+[elements.body]
+kind = "storage"
+energy = "ENERGY"
+[elements.body.states]
+S = { rate = "entropy" }
+Q = { rate = "current", between = ["a", "b"] }
+"""
+LEVER = """
+load = { kind = "mass", at = "end", mass = "m" }
+lever = { kind = "lever", first = ["tip", "wall"], second = ["end", "wall"], ratio = "1 + q/x_0" }
+"""
+
+
+def without(*elements, text=SPEC):
+    lines = text.splitlines()
+    return "\n".join(line for line in lines if line.split(" = ")[0] not in elements) + "\n"
+
+
+def assuming(text, conditions):
+    return text.replace('assume = ["R >= 0"', f'assume = ["R >= 0", {conditions}')
+
+
+def unproved(text):
+    return [row for row in verify(derive(parse(text))).rows if row.verdict is not Verdict.PROVED]
+
+
+HEATED_BY = without("cap", "body") + HEATED
+REFUTED = {
+    "a body that is cold": SPEC.replace("T_0*exp(S/c)", "T_0*(1 + S/c)"),
+    "heat that is a polynomial": HEATED_BY.replace(
+        "ENERGY", "c*T_0*(S/c + (S/c)**2/2) + Q**2/(2*C)"
+    ),
+    "a capacitance that rises": HEATED_BY.replace(
+        "ENERGY", "T_0*c*exp(S/c) + Q**2/(2*C)*(1 - S/c)"
+    ),
+    "a lever that turns round": without("mass") + LEVER,
+    "a coil with a pole": SPEC.replace(
+        'inductance = "L"', 'current = "i_s*phi/(phi_s - abs(phi))"'
+    ),
+}
+
+
+@pytest.mark.some(3)
+@pytest.mark.parametrize("name", REFUTED)
+def test_the_conditions_that_mend_a_row_do(name):
+    text = REFUTED[name]
+    for _ in range(3):  # a row may be refuted once another one holds
+        refuted = [row for row in unproved(text) if row.verdict is Verdict.REFUTED]
+        if not refuted:
+            break
+        said = [
+            re.search(r"; the conditions? ('.*) in \[domain\] mends? it", r.reason) for r in refuted
+        ]
+        assert all(said)
+        more = {condition for found in said for condition in found[1].split("'")[1::2]}
+        text = assuming(text, ", ".join(f'"{condition}"' for condition in more))
+    assert not unproved(text)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "left_out"),
+    [
+        ("T_0*exp(S/c)", "T_0*(1 + S/c)", "1 + S/c > -1"),
+        ('inductance = "L"', 'current = "i_s*phi/(phi_s - abs(phi))"', "phi_s - phi > 0"),
+    ],
+)
+def test_less_than_these_conditions_is_not_enough(old, new, left_out):
+    rows = decide(derive(parse(assuming(SPEC.replace(old, new), f'"{left_out}"')))).rows
+    assert any(row.verdict is Verdict.REFUTED for row in rows)
+
+
+WARM = [
+    ("cap", 'capacitance = "C"', 'capacitance = "C*(1 + al*(T - T_0))"'),
+    ("cap", 'capacitance = "C"', 'capacitance = "C*exp(al*(T - T_0))"'),
+    ("cap", 'capacitance = "C"', 'voltage = "Q/C*(1 + al*(T_body - T_0))"'),
+    ("spring", 'stiffness = "k"', 'stiffness = "k*T/T_0"'),
+    ("spring", 'stiffness = "k"', 'stiffness = "k*(1 - al*(T - T_0))"'),
+]
+
+
+def shown(store, old, new):
+    """Return the element and the conditions that the message on such a store shows."""
+    with pytest.raises(PiezoError) as caught:
+        derive(parse(SPEC.replace(old, new)))
+    said = rf"in place of '{store}' and 'body': (body = .*), and add to assume in \[domain\]: (.*)$"
+    return re.search(said, str(caught.value)).groups()
+
+
+@pytest.mark.some(3)
+@pytest.mark.parametrize(("store", "old", "new"), WARM)
+def test_the_storage_that_is_shown_is_proved(store, old, new):
+    element, conditions = shown(store, old, new)
+    assert not unproved(assuming(without(store, "body") + element, conditions))
+
+
+@pytest.mark.some(2)
+@pytest.mark.parametrize(("store", "old", "new"), WARM[::2])
+def test_without_its_last_condition_it_is_not(store, old, new):
+    element, conditions = shown(store, old, new)
+    text = assuming(without(store, "body") + element, conditions.rpartition(", ")[0])
+    assert any(row.verdict is not Verdict.PROVED for row in decide(derive(parse(text))).rows)
