@@ -214,11 +214,13 @@ def _of_derived(question: Question, found: Finding) -> str:
     _, witness, reason = found
     if witness is None or question.law is None or question.branch:
         return f"{reason}; {GIVE}"
-    bound = condition_text(question.original)
+    claim = question.original
+    ops = (">", "<") if claim.op == "!=" else (claim.op,)  # [domain] takes no !=
+    bounds = " or ".join(f"'{condition_text(Cmp(op, claim.left, claim.right))}'" for op in ops)
     at = ", ".join(f"{name} = {value}" for name, value in witness.items())
     return (
-        f"the law's energy that was found has no value at {at}, where '{bound}' does not hold: add "
-        f"that to [domain], or give the law's energy, energy = '...'"
+        f"the law's energy that was found has no value at {at}: add {bounds} to [domain], or give "
+        f"the law's energy, energy = '...'"
     )
 
 

@@ -143,7 +143,7 @@ def test_an_energy_with_logarithms_has_them_of_what_is_positive(law, assumed):
 def test_an_energy_without_a_value_says_what_to_write(law, assumed, needed):
     row = rows(circuit(assumed, coil=f'current = "{law}"'))["welldef", "coil"]
     assert row.verdict is Verdict.OPEN
-    assert f"'{needed}' does not hold: add that to [domain], or give the law's energy" in row.reason
+    assert f"add '{needed}' to [domain], or give the law's energy" in row.reason
     assert "has no value at phi_s = " in row.reason
 
 

@@ -132,7 +132,8 @@ def test_a_temperature_that_falls_below_zero_is_refuted():
     """
     row = next(row for row in decide(derive(parse(text))).rows if row.id == "temperature")
     assert row.verdict is Verdict.REFUTED
-    assert row.reason == "T_0 + b*S_body = 0"
+    mended = "; the condition 'T_0 + b*S_body > 0' in [domain] mends it"
+    assert row.reason == "T_0 + b*S_body = 0" + mended
     assert row.witness == {"T_0": "1", "b": "1", "S_body": "-1"}
 
 

@@ -86,4 +86,4 @@ bend = { kind = "spring", between = ["x", "wall"], force = "n*exp(a*q)", state =
     rows = decide(derive(parse(text))).rows
     (row,) = (r for r in rows if (r.id, r.element) == (WELL, "bend"))
     assert row.verdict is Verdict.OPEN
-    assert "give it, energy" in row.reason
+    assert "add 'a > 0' or 'a < 0' to [domain], or give the law's energy" in row.reason
