@@ -23,7 +23,7 @@ from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.numpy_head import numpy_functions
 from piezo_sym.translation.numpy_reader import read_numpy
 from piezo_sym.translation.reference import proved
-from piezo_sym.translation.signs import compare, reading
+from piezo_sym.translation.signs import compare, factors, reading
 from piezo_sym.translation.witness import witness
 from piezo_sym.translation.zero import Edges, edges_of, is_zero
 
@@ -152,6 +152,8 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
     field, allowed = known.field, dict[Value, list[Need]]()
     for given in known.needs:
         allowed.setdefault(given.value, []).append(given)
+        for factor, _ in factors(given.value) if given.kind == "nonzero" else ():
+            allowed.setdefault(factor, []).append(given)  # of a product that is not zero
     for need in needs:
         value = _in_first_lane(need.value)
         op = {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<=")

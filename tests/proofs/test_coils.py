@@ -122,6 +122,7 @@ def test_a_coil_that_saturates_runs_as_rates_by_hand():
         ("i_s*log((phi_s + phi)/(phi_s - phi))", ("phi_s - phi > 0", "phi_s + phi > 0")),
         ("i_s*phi/(phi_s - phi)", ("phi < phi_s",)),
         ("i_s*phi_s/(2*phi_s + phi)", ("phi > -2*phi_s",)),
+        ("i_s*phi/sqrt(phi_s**2 - phi**2)", ("phi_s > abs(phi)",)),
     ],
 )
 def test_an_energy_with_logarithms_has_them_of_what_is_positive(law, assumed):
@@ -159,3 +160,14 @@ def test_a_wrong_energy_is_not_that_of_its_law(energy):
         row.id: row for row in decide(dataclasses.replace(iphs, energies=(wrong, *others))).rows
     }
     assert found["energy"].verdict is Verdict.OPEN
+
+
+@pytest.mark.parametrize(("by", "verdict"), [("phi_s + phi", "PROVED"), ("phi_s + 2*phi", "OPEN")])
+def test_printed_text_may_divide_by_a_factor_of_what_the_law_divides_by(by, verdict):
+    law = 'current = "i_s*phi/sqrt(phi_s**2 - phi**2)"'
+    iphs = derive(circuit("phi_s > abs(phi)", "i_s > 0", coil=law))
+    texts = dict(template_of(iphs).filled(iphs.model.model_dump()))
+    old = "i_coil = i_s*phi/"
+    assert old in texts[".py"]
+    texts[".py"] = texts[".py"].replace(old, f"i_coil = i_s*phi*({by})/({by})/")
+    assert program_row(iphs, texts, [".py"]).verdict.value == verdict
