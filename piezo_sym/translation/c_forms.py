@@ -15,11 +15,22 @@ from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.zero import is_zero
 
 
+def is_part(node: ast.FunctionDef) -> bool:
+    """Return whether a function computes a part of the rows of another."""
+    return kind_of(node.returns) == "static void" and bool(re.search(r"_part_\d+$", node.name))
+
+
 def add_part(node: ast.FunctionDef, file: File) -> None:
-    """Take what a function of the file calls to compute a part of its rows."""
-    if node.name in file.parts or not re.fullmatch(r"\w+_part_\d+", node.name):
-        raise NotShownError(f"a function {node.name} of the C file's own")
+    """Take a part, which a function behind it calls."""
+    if node.name in file.parts:
+        raise NotShownError(f"{node.name} is defined twice")
     file.parts[node.name] = node
+
+
+def check_parts(file: File) -> None:
+    """Refuse parts that no function calls."""
+    if left := file.parts.keys() - file.called:
+        raise NotShownError(f"{min(left)} is never called")
 
 
 def add_helper(node: ast.FunctionDef, file: File, allowed: str) -> None:

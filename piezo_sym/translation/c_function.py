@@ -122,8 +122,8 @@ class CFunction:
                 self._block(self.scope.block(), body)
             case ast.Return(ast.expr() as value):
                 self._return(value)
-            case ast.Expr(ast.Call(ast.Name(name), args)) if name in self.file.parts:
-                self._part_of(self.file.parts[name], args)
+            case ast.Expr(ast.Call(ast.Name(name), args, [])) if name in self.file.parts:
+                self._part_of(name, args)
             case ast.Expr(ast.Name(name)) if name in self.scope.roles:  # (void)u;
                 pass
             case ast.Pass():
@@ -131,19 +131,17 @@ class CFunction:
             case _:
                 raise refused(node, "a statement")
 
-    def _part_of(self, part: ast.FunctionDef, args: list[ast.expr]) -> None:
-        """Read a part, which has the function's arguments and no names in common with it besides.
-
-        A part is called once and calls none, so that reading ends.
-        """
-        outer, own = self.scope, self.node.args
-        same = ast.unparse(part.args) == ast.unparse(own) and own.args
-        given = [ast.unparse(arg) for arg in args] == [arg.arg for arg in own.args]
-        alone = outer is self.whole and part.name not in self.called
-        if not (same and given and alone and kind_of(part.returns) == "static void"):
-            raise refused(args[0], f"a call of {part.name}")
-        self.called.add(part.name)
-        self._block(replace(outer, names=ChainMap()), part.body)
+    def _part_of(self, name: str, args: list[ast.expr]) -> None:
+        """Read a part, which has the same arguments and returns nothing; it calls no part."""
+        part, own, writes = self.file.parts[name], self.node, "out" in self.scope.roles.values()
+        given = [ast.unparse(arg) for arg in args] == [arg.arg for arg in own.args.args]
+        same = given and ast.unparse(part.args) == ast.unparse(own.args)
+        alone = self.scope is self.whole and name not in self.called
+        if not (same and alone and writes and name.startswith(f"{own.name}_part_")):
+            raise NotShownError(f"{name} is no part of {own.name}, or called elsewhere")
+        self.called.add(name)
+        self.file.called.add(name)
+        self._block(replace(self.scope, names=ChainMap()), part.body)
 
     def _return(self, node: ast.expr) -> None:
         if self.returned or self.scope.lanes:

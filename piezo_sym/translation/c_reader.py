@@ -13,7 +13,7 @@ and for the rest see `c_function`.  Helpers mean what their text says.  Nothing 
 import ast
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.translation.c_forms import add_helper, add_part
+from piezo_sym.translation.c_forms import add_helper, add_part, check_parts, is_part
 from piezo_sym.translation.c_function import CFunction
 from piezo_sym.translation.c_scope import File, kind_of
 from piezo_sym.translation.c_text import python_of
@@ -41,7 +41,7 @@ def read_c(text: str, known: Proved) -> dict[Key, Value]:
         if kind_of(node.returns) == "static double":
             add_helper(node, file, _HELPERS)
             continue
-        if kind_of(node.returns) == "static void":
+        if is_part(node):
             add_part(node, file)
             continue
         function = CFunction(node, file)
@@ -50,6 +50,7 @@ def read_c(text: str, known: Proved) -> dict[Key, Value]:
         seen.add(function.name)
         with reading(known.field, function.name):
             rows |= function.rows()
+    check_parts(file)
     if seen != SIGNATURES.keys():
         raise NotShownError("the C file lacks a function")
     return rows

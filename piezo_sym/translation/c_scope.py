@@ -48,6 +48,7 @@ class File:
     results: Mapping[str, str] = field(default_factory=dict)
     helpers: dict[str, ast.FunctionDef] = field(default_factory=dict)  # functions of the file's own
     parts: dict[str, ast.FunctionDef] = field(default_factory=dict)  # of functions
+    called: set[str] = field(default_factory=set)  # the parts that functions call
 
 
 @final

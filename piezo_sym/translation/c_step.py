@@ -4,8 +4,7 @@ Input: the text of ``<model>_step.c``, and the proved stage, for names and place
 by function and row.  The grammar:
 
     file        comments, the two headers, MACROS, DATA, functions, enumerations, tables
-    function    static void <model>_{integrands, stage, slopes, sizes}(...), see `c_function`
-    part        static void <model>_{stage, slopes}_part_N(as the function) { ... }
+    function    static void <model>_{integrands, stage, ...}[_part_N](...), see `c_function`
     helper      static inline real power_N_of(real z) { return expression; }
     table       enum { NAME = n, ... };    static const int NAME[] = { n, ... };
 
@@ -31,7 +30,7 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.tables import banks
-from piezo_sym.translation.c_forms import add_helper, add_part, helper_is
+from piezo_sym.translation.c_forms import add_helper, add_part, check_parts, helper_is, is_part
 from piezo_sym.translation.c_function import NOT_COMPARED, CFunction
 from piezo_sym.translation.c_scope import Branch, File, Scope, kind_of
 from piezo_sym.translation.c_text import python_of
@@ -153,7 +152,7 @@ class _Step:
             match node:
                 case ast.FunctionDef() if kind_of(node.returns) == "static inline real":
                     self._power(node)
-                case ast.FunctionDef(name) if "_part_" in name:
+                case ast.FunctionDef() if is_part(node):
                     add_part(node, file)
                 case ast.FunctionDef(name):
                     self.functions[self._own(name)] = node
@@ -187,8 +186,8 @@ class _Step:
         An integrand is returned without what its mean adds to that of its co-state.
         """
         paths = ["path_parameters", "drives"] if self.file.known.paths else []
-        wanted = ["integrands", "stage", "slopes", "sizes", *paths, *["bends"] * bends]
-        if self.functions.keys() != {*wanted}:
+        wanted = {"integrands", "stage", "slopes", "sizes", *paths, *["bends"] * bends}
+        if self.functions.keys() != wanted:
             raise NotShownError("the step has other functions than it should")
         found = self._integrands()
         stage = self._function("stage", by_branches=True)
@@ -198,6 +197,7 @@ class _Step:
         for name in paths:
             found |= self._function(name, by_branches=name == "drives").rows()
         places = [*stage.switches], self._function("slopes").places
+        check_parts(self.file)
         self._sizes(*places, self._function("bends").places if bends else None)
         self._told()
         limits, strict = self.tables.get("limits"), self.tables.get("strict")

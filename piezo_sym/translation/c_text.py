@@ -29,9 +29,9 @@ _COMMENT = r"/\*(?:(?!/\*|\*/|\?\?)[^\\])*\*/"
 _TOKEN = re.compile(
     rf"(?P<space>\s+|{_COMMENT})"
     r"|#pragma omp simd(?: reduction\(\+:[\w,\s\\]*\))?(?=\n)"
-    r"|[A-Za-z_]\w*"
+    r"|(?!PIEZO_SYM_)[A-Za-z]\w*"  # no macros of headers, which may stand for nothing
     r"|(?:(?:\d+\.\d*|\.\d+)(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+|\d{1,9})(?![\w.])"
-    r"|->|\|\||\+\+|--|\+=|[<>=!]=|[-+*/<>=?:,;(){}\[\]\ue000-\ue0ff]",
+    r"|(?!//)(?:->|\|\||\+\+|--|\+=|[<>=!]=|[-+*/<>=?:,;(){}\[\]\ue000-\ue0ff])",
     re.ASCII,
 )
 _COMPARED = re.compile(r" (?:if|or|[<>]|[<>=!]=) ")
@@ -83,7 +83,7 @@ def python_of(text: str, model: str, macros: str = "", known: Sequence[str] = ()
 def _lines(code: str, marks: Sequence[str]) -> list[str]:
     """Return the lines in Python of tokens with a space between each two."""
     code = code.replace(" ( double ) NAN ", " NAN ")
-    code = re.sub(r"enum {([^{}]*)}", lambda match: match[1].replace(",", ";"), code)
+    code = re.sub(r"enum {([^{}]*)}", lambda match: f"enum{match[1]}".replace(",", "; enum"), code)
     code = _LOOP.sub(_loop, re.sub(r"= {([^{}]*)}", r"= [\1]", code))
     if re.search(r"\+\+|--|#", code):
         raise NotShownError("the C file has an increment, or a directive, at another place")
@@ -99,7 +99,9 @@ def _lines(code: str, marks: Sequence[str]) -> list[str]:
             lines += [f"{' ' * depth}pass"] if lines[-1].endswith(":") else []
             depth -= 1
         elif text or end == "}":
-            lines.append(f"{' ' * depth}{_statement(text)}")
+            lines.append(
+                f"{' ' * depth}{_statement(text if depth else text.removeprefix('enum '))}"
+            )
     if last or depth or left:
         raise NotShownError("the C file ends early, or has a part in a comment")
     return lines

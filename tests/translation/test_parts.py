@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from piezo_sym import codegen, derive, layered
+from piezo_sym import codegen, derive, layered, load
 from piezo_sym.codegen import collocation_of, lower
 from piezo_sym.module_cache import write_module
 from piezo_sym.run.engine.engine import engine_of
@@ -85,6 +85,8 @@ MUTANTS = {
         ),
         r"\1 u,\2 x,",
     ),
+    "a call with a type": (CALL, CALL.replace("(x", "((void)x")),
+    "a part that is not called": (CALL, f"{CALL}    (void)x;\n".replace("part_2", "part_1")),
     "a part of another name": (
         re.compile(r"static void layered_stack_jacobian_part_2\("),
         "static void layered_stack_other(",
@@ -106,3 +108,29 @@ def test_a_wrong_row_in_a_part_is_not_proved(stack):
     text, wrong = stack[0]["C"], "out[51*n + 57] = alpha_transducer_12/C;"
     assert text.count(wrong.replace("= ", "= -")) == 1
     assert verdicts(stack, "C", text.replace(wrong.replace("= ", "= -"), wrong))
+
+
+RETURN = "    return k*power_2(q)/2.0 + power_2(p)/(2.0*m) + T_0*c*exp(S/c);"
+HEAD = "double oscillator_energy("
+
+
+def test_a_function_of_one_number_has_no_parts():
+    """What it returns would be that of a part, which returns nothing to it."""
+    iphs = derive(load("oscillator"))
+    text = printed(iphs)["C"]
+    start, end = text.index(HEAD), text.index(RETURN) + len(RETURN) + 3
+    whole = text[start:end]
+    arguments = whole[len(HEAD) : whole.index(")")]
+    names = ", ".join(argument.split()[-1].removeprefix("*") for argument in arguments.split(","))
+    part = whole.replace(HEAD, "static void oscillator_energy_part_1(")
+    call = f"{HEAD}{arguments})\n{{\n    oscillator_energy_part_1({names});\n}}\n"
+    assert not different("C", text, Reference(iphs))
+    assert different("C", f"{text[:start]}{part}\n{call}{text[end:]}", Reference(iphs))
+
+
+def test_a_model_may_be_called_like_a_part():
+    for name in ("spare_part_list", "x_part_1"):
+        iphs = derive(parse(chain(1).replace('name = "chain"', f'name = "{name}"')))
+        assert iphs.model.name == name
+        texts = printed(iphs)
+        assert not [row for key in texts for row in different(key, texts[key], Reference(iphs))]

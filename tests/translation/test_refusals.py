@@ -86,6 +86,15 @@ C = {
     "zeros that come too late": ("    out[1] = 1.0/M;", f"{ZEROS}\n    out[1] = 1.0/M;"),
     "a line joined": ("out[0] = v_mass;", "out[0] = v_mass; \\\n"),
     "a comment to the end": ("out[0] = v_mass;", "out[0] = v_mass; // \\\n"),
+    "a comment behind a slash": ("out[0] = v_mass;", "out[0] = v_mass //**/ 2.0\n;"),
+    "an enumeration in a block": (
+        "out[0] = v_mass;", "double o2; { enum { o2 = 1 }; } out[0] = v_mass*o2;"
+    ),
+    "a name that the header makes empty": (
+        "static double pick",
+        "static double power_8(double PIEZO_SYM_piezo_stack_H)\n{\n"
+        "    return 0.0 - PIEZO_SYM_piezo_stack_H - 0.0;\n}\n\nstatic double pick",
+    ),
     "a condition": ("out[0] = v_mass;", "if (q > 0.0) out[0] = v_mass;"),
     "an octal number": ("power_2(p)/(2.0*M)", "power_2(p)/(010/4*M)"),
     "another function's name": ("void piezo_stack_rhs(", "void rhs("),
