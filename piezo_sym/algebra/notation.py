@@ -35,20 +35,23 @@ def latex(expr: sp.Expr) -> str:
 def text(expr: sp.Expr) -> str:
     """Return one expression as plain text."""
     plain = _with_magnitudes(expr, sp.Function("abs"))
-    known = {choice: _extreme(choice) for choice in plain.atoms(sp.Piecewise)}
-    return str(_Text().doprint(plain.xreplace(known)))
+    return str(_Text().doprint(plain.replace(lambda e: isinstance(e, sp.Piecewise), _extreme)))
 
 
 @final
 class _Text(StrPrinter):  # type: ignore[misc]
-    """Writes choices as laws do: ``a if x > 0 else b``."""
+    """Writes choices, whose last case is for all else, as laws do: ``a if x > 0 else b``."""
 
     def _print_Piecewise(self, choice: sp.Piecewise) -> str:
-        *cases, (last, always) = choice.args
-        if always != sp.true:
-            return str(super()._print_Piecewise(choice))
+        *cases, (last, _) = choice.args
         branches = (f"{self._print(value)} if {self._print(c)} else " for value, c in cases)
         return f"({''.join(branches)}{self._print(last)})"
+
+    def _print_Relational(self, condition: Any) -> str:
+        return f"{self._print(condition.lhs)} {condition.rel_op} {self._print(condition.rhs)}"
+
+    def _print_And(self, condition: sp.And) -> str:
+        return " and ".join(map(self._print, condition.args))
 
 
 def _with_magnitudes(expr: sp.Expr, magnitude: Any) -> sp.Expr:
@@ -74,7 +77,9 @@ def _named(choice: sp.Piecewise, magnitude: Any) -> sp.Expr | None:
 
 def _extreme(choice: sp.Piecewise) -> sp.Expr:
     """Return a choice as the larger or smaller of two, or a power of that and 0; else as it is."""
-    (first, condition), (second, other), *_ = choice.args
+    if len(choice.args) != 2:
+        return choice
+    (first, condition), (second, other) = choice.args
     if other != sp.true or not isinstance(condition, ORDERED):
         return choice
     base, power = next((side for side in (first, second) if side != 0), first).as_base_exp()

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from piezo_sym.errors import STICKING, PiezoError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import Trajectory
-from piezo_sym.run.engine.batch import Batch, Stepping, collocation_library, steps_of
+from piezo_sym.run.engine.batch import Batch, Stepping, steps_of
 from piezo_sym.run.engine.engine import Engine, engine_of, functions_of
 from piezo_sym.run.engine.library import Layout, Sources, library
 from piezo_sym.run.inputs import Inputs, Segment
@@ -238,9 +238,10 @@ def compile_ahead(module: GeneratedModule, stages: int) -> None:
         steps = steps_of(module, functions, stages, layout)
         beside = Thread(target=_compiled, args=(steps,), daemon=True)
         beside.start()
-        engine = engine_of(module)
-        beside.join()
-        collocation_library(engine, stages, layout)
+        try:
+            engine_of(module)
+        finally:
+            beside.join()
 
 
 def _compiled(sources: Sources) -> None:

@@ -8,7 +8,6 @@ cells say which bank they are in: ``creep_spring`` of bank ``creep``, between ``
 own.
 """
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -132,10 +131,9 @@ class Part:
 
     @cached_property
     def _within(self) -> Within:
-        """Its place and its own names; a name of ours that it has several names for keeps ours."""
+        """Its place and its own names: the first where it has several for one of ours."""
         words, nodes = self.renaming.words, dict[str, str]()
-        given = Counter((*self.component.parameters.values(), *self.component.inputs.values()))
-        old = {words[word]: word for word in reversed([*words]) if given[words[word]] < 2}
+        old = {words[word]: word for word in reversed([*words])}
         for theirs, ours in self.component.nodes.items():
             nodes[ours] = f"{nodes[ours]} and {theirs}" if ours in nodes else theirs
         return Within(f"components.{self.name}", f"{self.name}.", old, nodes)

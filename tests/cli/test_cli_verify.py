@@ -105,6 +105,12 @@ WRONG = {
 }
 
 
+def test_kinds_of_other_domains_are_not_offered(call, tmp_path):
+    path = tmp_path / "gyrator.toml"
+    path.write_text(GYRATOR.replace('"N/A"', '"m"') + TRANSDUCER)
+    assert "a rack takes" not in call("verify", path).out
+
+
 @pytest.mark.parametrize(("text", "said"), WRONG.values(), ids=WRONG)
 def test_a_ratio_of_another_unit_is_said_before_what_follows_from_it(call, tmp_path, text, said):
     """That the ratio may be zero, and the two stores then are not one, is said after it."""

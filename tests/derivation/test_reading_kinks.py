@@ -46,6 +46,7 @@ KNOWN = {
         ("k*(q - s if q < s else 0)", "min(q - s, 0)", True),
         ("k*max(q, 0)**2/r", "max(q, 0)**2", True),
         ("k*(0 if q < s else (q - s)**3)/r**2", "max(0, q - s)**3", True),
+        ("k*min(max(q, 0), s)", "min(q, s)", True),
         ("k*(q if q > 0 else -2*q)", "(q if q > 0 else -2*q)", True),
         ("k*(q if q < 0 else 2*q)", "max(q, 2*q)", True),
         ("k*(r if q > 0 else 0)*q/s", "(r if q > 0 else 0)", True),
@@ -84,3 +85,9 @@ def test_what_is_nearly_a_magnitude_is_read_by_its_branches(cases):
     choice = sp.Piecewise(*((values[value], ways[way]) for value, way in cases))
     assert " if " in text(choice)
     assert "cases" in latex(choice)
+
+
+def test_other_choices_are_read_as_choices():
+    x = sp.Symbol("x", real=True)
+    assert text(sp.Piecewise((1, sp.Ne(x, 0)), (2, True))) == "(1 if x != 0 else 2)"
+    assert text(sp.Piecewise((x, (x > 0) & (x < 3)), (0, True))) == "(x if x > 0 and x < 3 else 0)"

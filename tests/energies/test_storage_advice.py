@@ -140,6 +140,14 @@ def test_lanes_and_dissipation_are_no_part_of_a_storage(old, new):
     assert "write lanes and dissipation apart from the store" in said
 
 
+def test_an_energy_of_two_entropies_is_no_storage():
+    two = 'other = { kind = "thermal_mass", temperature = "T_0*exp(S_o/c)", state = "S_o" }\n'
+    text = SPEC.replace("body = {", f"{two}body = {{")
+    said = refusal(text.replace('capacitance = "C_0"', 'capacitance = "C_0*T_body/T_other"'))
+    assert said.endswith("let it depend on parameters and its own state")
+    assert "lanes" not in said
+
+
 def test_a_state_by_its_letter_is_told_its_symbol():
     said = refusal(SPEC.replace('"R*i"', '"R*i*(1 + (q/x_0)**2)"'))
     assert "'q' has no meaning here" in said

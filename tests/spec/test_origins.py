@@ -61,6 +61,17 @@ def test_a_wrong_unit_is_said_in_the_names_of_the_component(folder, capsys, text
     assert f"units: components.left: {CONDITION};" in said
 
 
+def test_two_names_that_are_given_one_of_ours_stay_those_of_the_component(folder, capsys):
+    more = LEAK.replace("R = {", 'G = { value = 1.0, unit = "ohm*m" }\nR = {')
+    (folder / "leak.toml").write_text(more.replace("v/R", "v*G/R**2"))
+    path = folder / "whole.toml"
+    path.write_text(GIVEN.replace('R = "R_1"', 'R = "R_1", G = "R_1"').replace("R_1", "T_0"))
+    assert run(["verify", str(path)]) == 1
+    out = capsys.readouterr().out
+    assert "components.left: elements.out.current: v*" in out
+    assert "T_0" not in out.partition("elements.out.current: ")[2].partition(" is ")[0]
+
+
 def test_one_in_a_component_of_a_component(folder, capsys):
     path = folder / "whole.toml"
     path.write_text(HEAD + LEFT.replace("left", "a").replace("leak", "middle"))

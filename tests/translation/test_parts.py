@@ -7,6 +7,10 @@ import pytest
 
 from piezo_sym import codegen, derive, layered, load
 from piezo_sym.codegen import collocation_of, lower
+from piezo_sym.codegen.c.order import Write
+from piezo_sym.codegen.c.parts import in_parts
+from piezo_sym.codegen.program import Described, Quantity
+from piezo_sym.expressions.tree import Sym
 from piezo_sym.module_cache import write_module
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.spec.load import parse
@@ -57,6 +61,12 @@ def test_parts_compute_what_numpy_does(stack, tmp_path):
     for name in ("jacobian", "rhs"):
         ours, theirs = (getattr(of, name)(x, u, p) for of in (engine, module))
         assert np.abs(ours - theirs).max() <= 1e-12 * np.abs(theirs).max()
+
+
+def test_what_cannot_be_divided_is_printed_whole():
+    chained = [Quantity(f"a{n}", Sym(f"a{n - 1}"), None, "") for n in range(1, 1500)]
+    writes = [Write("out[0]", Sym("a1499"))]
+    assert in_parts(chained, writes, [[Described("a0", "", "", None)]]) == ([], writes)
 
 
 MUTANTS = {

@@ -4,19 +4,16 @@ Input: a `Program`.  Output: the text of ``<model>.h``.  Texts of a spec are in 
 changed so that they cannot end one.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
 
-from piezo_sym.codegen.c.names import c_names, fresh_names
+from piezo_sym.codegen.c.names import PART, c_names, fresh_names
 from piezo_sym.codegen.layout import size_in_words
 from piezo_sym.codegen.program import Described, Program, head_lines
 from piezo_sym.errors import one_line
 
 WIDTH = 96
 MOST_LANES = 16  # of a bank whose values are in the header
-#: The end of the name of a function that computes a part of another.
-PART = re.compile(r"_part_\d+$")
 #: Docstrings of functions that the program does not describe.
 FUNCTIONS = {
     "states": "Number of states n",

@@ -4,6 +4,7 @@ Input: the names of a program.  Output: the C name of each: the name itself, or 
 The header is used together with others, and in C++: their macros and keywords count.
 """
 
+import re
 from collections.abc import Iterable, Mapping
 
 from piezo_sym.codegen.program import Names, Program
@@ -40,6 +41,8 @@ _ENDS = (
     *("input_count", "output_count", "body_count", "condition_count"),
 )
 
+#: The end of the name of a function that computes a part of another.
+PART = re.compile(r"_part_\d+$")
 KEPT = (
     frozenset(f"{_CPLUSPLUS} {_MACROS} {_CALLED} {_REALS}".split())
     | {f"{kind}_{word}" for kind in ("FLT", "DBL", "LDBL") for word in _FLOATS.split()}
@@ -58,7 +61,7 @@ def c_names(program: Program) -> dict[str, str]:
     words += [f"{bank}_count" for bank in program.counts]
     words += [quantity.name for quantity in program.quantities]
     for word in dict.fromkeys(words):
-        part = word.startswith(f"{program.name}_") and "_part_" in word
+        part = word.startswith(f"{program.name}_") and PART.search(word)
         names[word] = fresh(word, taken) if part or word in reserved else word
         taken.add(names[word])
     return names

@@ -59,7 +59,8 @@ def in_parts(
     found = [needs(write.value, loop=write.bank is not None) for write in writes]
     groups = [*_groups([n for n, part in enumerate(found) if not part.loop], found)]
     statements = sum(_size(group, found) for group in groups)
-    if statements > MOST_AGAIN * _size([n for group in groups for n in group], found):
+    whole = _size([n for group in groups for n in group], found)
+    if len(groups) < 2 or statements > MOST_AGAIN * whole:
         return [], writes
     left = [write for write, part in zip(writes, found, strict=True) if part.loop]
     return [[writes[n] for n in group] for group in groups], left

@@ -53,7 +53,7 @@ def _check_law(
     words, own = " and ".join(map(quote, found)), " and ".join(law.letters) or "its own state"
     what = f"the {law.field} depends on {words}, and then is no energy of {own}"
     remedy, parts = ALONE, tuple(dict.fromkeys((law.element, *found.values())))
-    if all(parts):
+    if all(parts) and sum(spec.elements[part].is_body for part in parts) < 2:
         given = f"{listing(map(quote, parts[:-1]))} and {quote(parts[-1])}"
         storage = _storage(spec, parts, hot)
         remedy = f"give one energy of all their states in place of {given}: {storage}"
@@ -64,14 +64,14 @@ def _check_law(
 def _storage(spec: Tables, parts: tuple[str, ...], hot: Mapping[str, str]) -> str:
     """Return the text of a `storage` that has the energies of some stores and bodies; '' if none.
 
-    It has no lanes, no law beside its energy, and one entropy at most.  Laws of bodies take the
-    place of their temperatures, `hot`.
+    It has no lanes, and no law beside its energy.  The law of the body, one at most, takes the
+    place of its temperatures, `hot`.
     """
     ports = {part: spec.elements[part].ports(part) for part in parts}
     stores = {n: [p for p in own if isinstance(p, Storage | Body)] for n, own in ports.items()}
     heated = {name: p for name, own in stores.items() for p in own if isinstance(p, Body)}
     others = any(len(own) != len(stores[name]) for name, own in ports.items())
-    if others or len(heated) > 1 or not bank_of(spec).keys().isdisjoint(parts):
+    if others or not bank_of(spec).keys().isdisjoint(parts):
         return ""
     warm = {word: heated[body].law for word, body in hot.items() if body in heated}
     energies = (_energy(own[0], warm) for own in stores.values())
@@ -88,9 +88,8 @@ def _needed(
 ) -> Iterator[Cmp]:
     """Yield what [domain] has to say, besides what it says: what the kinds of elements need.
 
-    With a body also that divisors are positive, inner ones first, and that its temperature is,
-    which depends on the states of the stores then. Where a law is affine in it, it rises with the
-    entropy.
+    With a body also that divisors are positive, inner ones first, and the temperature, which then
+    depends on the states of the stores, too.
     """
     known = {parse_condition(text, "domain.assume") for text in spec.domain.assume}
     free: set[Expr] = {Sym(symbol) for symbol in states(spec)}

@@ -1,6 +1,7 @@
 """The kinds of elements by their names in a spec: one type per kind, made from its row."""
 
 from collections.abc import Iterator, Mapping
+from itertools import product
 from typing import Any
 
 from piezo_sym.expressions.dimensions import Dimension
@@ -23,14 +24,14 @@ def kind_of(*role: Any) -> Kind:
 
 
 def with_ratio_in(unit: Dimension, element: Element) -> Iterator[tuple[Kind, str]]:
-    """Yield the kinds that take a ratio in `unit` and couple a domain which `element` couples.
+    """Yield the kinds that take a ratio in `unit` and couple the first domain that `element` does.
 
     With each goes the name of its second domain if `element` does not couple that, else ''.
     """
-    for port in (port for port in element.ports("") if isinstance(port, Coupling)):
+    couplings = (port for port in element.ports("") if isinstance(port, Coupling))
+    for port, kind in product(couplings, TABLE):
         own = {port.first_domain, port.second_domain}
-        for kind in TABLE:
-            for first, second, ratio_unit in kind.form.ratios:
-                alike = (first in own and first != second) or {first, second} == own
-                if alike and parse_unit(ratio_unit).dimension == unit:
-                    yield kind, "" if second in own else second.name
+        for first, second, ratio_unit in kind.form.ratios:
+            alike = (first == port.first_domain != second) or {first, second} == own
+            if alike and parse_unit(ratio_unit).dimension == unit:
+                yield kind, "" if second in own else second.name
