@@ -7,7 +7,6 @@ each name the expression behind it, stated once.
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import final
 
 import sympy as sp
@@ -16,12 +15,10 @@ from piezo_sym.algebra.integrals import integral
 from piezo_sym.algebra.lanes import vector
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError, SpecError, quote, with_article
-from piezo_sym.expressions.calculus import neg
 from piezo_sym.expressions.energies import antiderivative
-from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tidying import collected
-from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Sym, replaced, walk
+from piezo_sym.expressions.tree import ZERO, Expr, Sym
+from piezo_sym.iphs.logarithms import with_values
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, Slope, port_order
 from piezo_sym.spec.circuit import Circuit
@@ -37,7 +34,6 @@ from piezo_sym.spec.elements.ports import (
     Source,
     Storage,
 )
-from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import greater, starts
 
 
@@ -116,8 +112,8 @@ def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
     )
     rows: dict[tuple[Expr, str | None, bool], tuple[int, ...]] = {}
     for n, (placed, port) in enumerate(circuit.of(Storage, Body)):
-        law = port.energy or _valued(
-            _integral(placed.element, port, positive), port.state, circuit.model
+        law = port.energy or with_values(
+            _integral(placed.element, port, positive), port.state, circuit
         )
         key = law, placed.bank, port.energy is None
         rows[key] = (*rows.get(key, ()), n)
@@ -134,22 +130,6 @@ def _integral(element: str, port: Storage | Body, positive: frozenset[str]) -> E
         expected = "one of the functions of laws, found by SymPy in 5 s"
         remedy = f"give the energy itself instead: energy = '...', a law of {port.state}"
         raise SpecError(what, f"elements.{element}", expected, remedy)
-    return energy
-
-
-def _valued(energy: Expr, state: str, model: Model) -> Expr:
-    """Return an energy with log(-a) for log(a) where a < 0 at the spec's own values.
-
-    Both have one slope, and SymPy does not know in which of them the domain is; row welldef shows
-    that the energy has a value, row energy that its slope is the law.
-    """
-    logs = [n for n in walk(energy) if isinstance(n, Call) and n.function == "log"]
-    own: dict[str, Value] = {name: Fraction(entry.si) for name, entry in model.inputs.items()}
-    own |= {name: Fraction(p.lanes[0]) for name, p in model.parameters.items()}
-    with suppress(ArithmeticError, ValueError):
-        own[state] = value_of(starts(model, state)[0], own)
-        below = (n for n in logs if all_hold((Cmp("<", n.args[0], ZERO),), own))
-        return replaced(energy, {n: Call("log", (collected(neg(n.args[0])),)) for n in below})
     return energy
 
 

@@ -17,14 +17,23 @@ from piezo_sym.algebra.sums import SymbolicLaneSum
 from piezo_sym.algebra.symbols import Raised
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.tree import Cmp, Expr, If, Num, Sym, names, walk
+from piezo_sym.expressions.tree import Call, Cmp, Expr, If, Num, Sym, names, walk
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.branches import value_conditions
+from piezo_sym.proofs.branches import KINKED, value_conditions
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import bank_states, laws, states
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.functions import call, power, raised, size_of
 from piezo_sym.translation.signs import assume, compare, on_path, reading
+
+#: Functions of which some parts have a value on one branch alone, as choices; abs(a) needs a.
+BRANCHED = KINKED - {"abs"}
+
+
+def _branches(tree: Expr | Cmp) -> bool:
+    return any(
+        isinstance(n, If) or (isinstance(n, Call) and n.function in BRANCHED) for n in walk(tree)
+    )
 
 
 @final
@@ -101,14 +110,16 @@ class SystemReader:
             return self(self.iphs.symbols.law(law, letters))
 
     def _divide(self, tree: Expr | Cmp, letters: Mapping[str, sp.Symbol]) -> None:
-        """Note what a tree, and a temperature in it, divides by as it is written, without choices.
+        """Note what a tree, and a temperature in it, divides by as it is written.
 
         Rows welldef show that it is not zero, and SymPy turns phi/(L/(1 + phi**2)) into a product.
+        They show that on each branch for what stands on it: trees with branches are left out.
         """
         bodies = {Sym(port.temperature): port.law for _, port in self.iphs.circuit.of(Body)}
         found = [tree, *(law for word, law in bodies.items() if word in walk(tree))]
-        smooth = [t for t in found if not any(isinstance(n, If) for n in walk(t))]
-        for condition in (c for t in smooth for c in value_conditions(t)):
+        for condition in (
+            c for part in found if not _branches(part) for c in value_conditions(part)
+        ):
             if condition.op == "!=":
                 power(self(self.iphs.symbols.law(condition.left, letters)), -1)
 

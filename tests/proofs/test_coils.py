@@ -29,7 +29,7 @@ a = {{ value = 1.0, unit = "1/Wb**2" }}
 [domain]
 assume = {assumed}
 [initial]
-phi = 0.9
+phi = {phi}
 [elements]
 coil = {{ kind = "inductor", between = ["a", "gnd"], {coil}, state = "phi" }}
 cap = {{ kind = "capacitor", between = ["a", "b"], capacitance = "C", state = "Q" }}
@@ -38,8 +38,8 @@ body = {{ kind = "thermal_mass", temperature = "{body}", state = "S" }}
 """
 
 
-def circuit(*assumed, coil='inductance = "L"', body="T_0*exp(S/c)"):
-    return parse(SPEC.format(assumed=["R >= 0", *assumed], coil=coil, body=body))
+def circuit(*assumed, coil='inductance = "L"', body="T_0*exp(S/c)", phi=0.9):
+    return parse(SPEC.format(assumed=["R >= 0", *assumed], coil=coil, body=body, phi=phi))
 
 
 def rows(model):
@@ -128,6 +128,32 @@ def test_a_coil_that_saturates_runs_as_rates_by_hand():
 def test_an_energy_with_logarithms_has_them_of_what_is_positive(law, assumed):
     report = verify(derive(circuit(*assumed, "i_s > 0", coil=f'current = "{law}"')))
     report.raise_if_not_proved()
+
+
+@pytest.mark.some(3)
+@pytest.mark.parametrize("phi", [-2.0, 0.0, 3.0])
+@pytest.mark.parametrize(
+    "law",
+    [
+        "i_s*log(1 + max(phi, 0)/phi_s)",
+        "i_s*phi_s/(phi_s + phi) if phi > 0 else i_s*phi_s/(phi_s - 2*phi)",
+        "i_s*phi/(phi_s + max(phi, -phi_s/2))",
+        "i_s*phi_s/(phi_s - phi) if phi < phi_s/2 else 4*i_s*phi/phi_s",
+    ],
+)
+def test_logarithms_of_a_branch_are_those_of_what_is_positive_on_it(law, phi):
+    """Whatever branch the spec's own values are on."""
+    found = rows(circuit("phi_s > 0", coil=f'current = "{law}"', phi=phi)).values()
+    assert {row.verdict for row in found if row.id in {"energy", "welldef"}} == {Verdict.PROVED}
+
+
+def test_what_a_piece_of_a_table_divides_by_is_not_what_all_do():
+    law = 'current = "table(phi, 0, 0, phi_s, i_s, 2*phi_s, i_s*a*L/(1/(a - 1)))"'
+    iphs = derive(circuit("phi < phi_s", "phi_s > 0", "a >= 1", coil=law, phi=0.5))
+    texts = dict(template_of(iphs).filled(iphs.model.model_dump()))
+    found = program_row(iphs, texts)
+    assert found.verdict is Verdict.OPEN
+    assert "needs a value to be nonzero" in found.reason
 
 
 @pytest.mark.parametrize(
