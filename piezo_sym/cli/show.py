@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated
 
@@ -34,7 +34,7 @@ def show(
         return
     for line in (*_head(model), *_banks(iphs.model), ""):
         typer.echo(line)
-    _elements(iphs.model)
+    _elements(iphs.model, {m.store.state for joint in iphs.junction.joints for m in joint.members})
     for line in _equations(iphs):
         typer.echo(line)
 
@@ -55,15 +55,15 @@ def _banks(model: Model) -> Iterator[str]:
         yield f"bank '{bank}': lanes j = 1..r for any r = {bank}_count; {count} in the spec"
 
 
-def _elements(model: Model) -> None:
-    """Print elements, inputs and parameters, with values in SI and defaults."""
+def _elements(model: Model, joined: Collection[str]) -> None:
+    """Print elements, inputs and parameters, in SI; `joined` are states of joined stores."""
     from piezo_sym.spec.flatten import inputs_of
 
     rows: list[tuple[str, ...]] = []
     for name, element in model.elements.items():
         laws = "\n".join(_laws(model, name, element))
         kind = f"{element.kind}, {element.joined} joined" if element.joined > 1 else element.kind
-        rows.append((name, kind, _where(element), laws, _starts(model, name, element)))
+        rows.append((name, kind, _where(element), laws, _starts(model, name, element, joined)))
     columns = ("name", "kind", "where", "laws and values (SI)", "state at t = 0")
     print_table("Elements", columns, rows)
     used, rows = inputs_of(model.elements.values()), []
@@ -105,12 +105,13 @@ def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
         yield text
 
 
-def _starts(model: Model, name: str, element: Element) -> str:
+def _starts(model: Model, name: str, element: Element, joined: Collection[str]) -> str:
     symbols = [state.symbol for state in element.own_states(name)]
     starts = {one: str(model.initial.get(one, "0 (not said)")) for one in symbols}
     given = [one for one in starts if one in model.joined and one in model.initial]
     sums = {one: f"{model.joined[one]}*({starts[one]})" for one in given}
-    return "\n".join(f"{one} = {start}" for one, start in (starts | sums).items())
+    free = {one: f"{one} (joined, not said)" for one in joined if one not in model.initial}
+    return "\n".join(free.get(one, f"{one} = {start}") for one, start in (starts | sums).items())
 
 
 def _equations(iphs: IPHS) -> Iterator[str]:

@@ -90,6 +90,31 @@ lever = { kind = "lever", first = ["a", "wall"], second = ["b", "wall"], ratio =
 """
 
 
+def test_how_joined_stores_start_is_shown_where_it_is_given(call, tmp_path):
+    path = tmp_path / "springs.toml"
+    text = """
+[model]
+name = "springs"
+[parameters]
+k = { value = 1.0, unit = "N/m" }
+m = { value = 1.0, unit = "kg" }
+x_0 = { value = 0.5, unit = "m" }
+START
+[elements]
+mass = { kind = "mass", at = "x", mass = "m" }
+one = { kind = "spring", between = ["x", "y"], stiffness = "k", state = "q", rest = "x_0" }
+two = { kind = "spring", between = ["y", "wall"], stiffness = "2*k", state = "z" }
+"""
+    path.write_text(text.replace("START", ""))
+    out = call("show", path).out
+    assert "q (joined, not said)" in out
+    assert "z (joined, not said)" in out
+    path.write_text(text.replace("START", "[initial]\nq = 0.5\nz = 0.0"))
+    out = call("show", path).out
+    assert "q = 0.5" in out
+    assert "z = 0.0" in out
+
+
 def test_what_was_joined_is_said(call, tmp_path):
     path = tmp_path / "joined.toml"
     path.write_text(JOINED, encoding="utf-8")

@@ -276,6 +276,20 @@ def test_symbols_are_given_once(old, new, place):
     assert "set 'state' in elements." in message
 
 
+def test_a_state_of_a_storage_is_renamed_where_it_stands():
+    gas = """
+[elements.gas]
+kind = "storage"
+energy = "k*z**2/2 + T_0*c_0*exp(S/c_0)"
+[elements.gas.states]
+z = { rate = "velocity", between = ["tip", "wall"] }
+S = { rate = "entropy" }
+"""
+    message = str(refusal(parse, edited_text() + gas))
+    assert "symbol 'S' is already that of elements.body" in message
+    assert "call it otherwise in elements.gas.states and energy" in message
+
+
 def test_a_parameter_and_an_input_of_one_name():
     message = refused_edit(("[domain]", 'M = { unit = "N" }\n[domain]'))
     assert message == (

@@ -47,11 +47,11 @@ def _check_fits(
     if given not in known:
         example = f'{given} = {{ value = 1.0, unit = "{meant.unit}" }}'
         example = example.replace("value = 1.0, ", "") if what == "input" else example
-        other = f"{nearest(given, known)}; or " if known else ""
-        remedy = f"{other}declare it in [{what}s]: {example}" if NAME.fullmatch(given) else other
-        expected = (
-            f"a number, or {with_article(what)}" if what == "parameter" else with_article(what)
-        )
+        ways = [nearest(given, known)] if known else []
+        ways += [f"declare it in [{what}s]: {example}"] if NAME.fullmatch(given) else []
+        remedy, expected = "; or ".join(ways), with_article(what)
+        if what == "parameter":
+            expected = f"a number in the component's unit, {meant.unit}, or {expected}"
         raise SpecError(f"{quote(given)} is no {what} of this spec", where, expected, remedy)
     unit = known[given].dimension.dimension
     needed = meant.dimension.dimension

@@ -30,7 +30,7 @@ def check_names(spec: Tables) -> None:
     taken = {symbol for symbol, _ in symbols}
     for symbol, where in symbols:
         check_symbol(symbol, where, taken)
-    _check_unique(symbols)
+    _check_unique(spec, symbols)
     _check_reserved(spec, symbols)
     for name, parameter in spec.parameters.items():
         given = parameter.value if isinstance(parameter.value, tuple) else (parameter.value,)
@@ -106,14 +106,16 @@ def _quantities(spec: Tables) -> Iterator[tuple[str, str]]:
             yield from ((word, bank) for word in words if word)
 
 
-def _check_unique(symbols: list[tuple[str, str]]) -> None:
+def _check_unique(spec: Tables, symbols: list[tuple[str, str]]) -> None:
     seen: dict[str, str] = {}
     for symbol, where in symbols:
         if symbol in seen:
             what = f"symbol {quote(symbol)} is already that of {seen[symbol]}"
             remedy = "give one of them another name"
             if where.startswith("elements."):
+                states = getattr(spec.elements[where.removeprefix("elements.")], "states", None)
                 remedy = f"set 'state' in {where} to another symbol"
+                remedy = f"call it otherwise in {where}.states and energy" if states else remedy
             raise SpecError(what, where, remedy=remedy)
         seen[symbol] = where
 
