@@ -239,8 +239,8 @@ def _mending_condition(sign: SignOf, questions: tuple[Question, ...], solver: So
 def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: SolverLike) -> str:
     """Return conditions for [domain], such as n > 0, under which all claims hold, or ''.
 
-    They are about parameters, inputs, states and temperatures.  The spec's own values satisfy them,
-    and decide between > 0 and < 0 for a claim ``!= 0``.
+    They are about parameters, inputs, states and temperatures.  The spec's own values decide
+    between > 0 and < 0 for a claim ``!= 0``, and whether they satisfy the conditions is said.
     """
     points, known = spec_points(iphs), frozenset[str]()
     known = known.union(*points)
@@ -248,12 +248,12 @@ def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: Solv
     if not all(names(claim) and known >= {*names(claim)} for claim in broken):
         return ""
 
-    def kept(conditions: tuple[Cmp, ...]) -> bool:
-        return all(all_hold(conditions, point) for point in points)
+    def kept(condition: Cmp) -> bool:
+        return all(all_hold((condition,), point) for point in points)
 
     def mended(conditions: tuple[Cmp, ...]) -> bool:
         within = (replace(q, where=(*conditions, *q.where)) for q in questions)
-        return kept(conditions) and _first_failure(within, solver) is None
+        return _first_failure(within, solver) is None
 
     def positive(part: Expr) -> bool:
         claim = Cmp(">", part, ZERO)
@@ -263,11 +263,11 @@ def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: Solv
     found, bodies = dict[Cmp, str](), [port for _, port in iphs.circuit.of(Body)]
     for claim in sorted(broken, key=lambda claim: len(names(claim))):
         ops = (">", "<") if claim.op == "!=" else (claim.op,)
-        ways = (without_factors(Cmp(op, claim.left, claim.right), positive) for op in ops)
-        for way in [way for way in ways if kept((way,)) and way not in found][:1]:
-            warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
-            text = condition_text(way)
-            found[way] = warm[0] if warm and len(text) > MOST_TEXT else text
+        ways = [without_factors(Cmp(op, claim.left, claim.right), positive) for op in ops]
+        way = next(filter(kept, ways), ways[0])
+        warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
+        text = condition_text(way)
+        found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
     if not found or not mended((*found,)):
         return ""
     for claim in tuple(found):  # leave out conditions that the others imply
@@ -275,4 +275,11 @@ def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: Solv
         if rest and mended(rest):
             del found[claim]
     said, many = " and ".join(f"'{text}'" for text in found.values()), len(found) > 1
-    return f"; the condition{'s' * many} {said} in [domain] mend{'' if many else 's'} it"
+    mends = (
+        f"mend{'' if many else 's'} it"
+        if all(map(kept, found))
+        else (
+            "would mend it, but the values of the spec do not satisfy " + ("them" if many else "it")
+        )
+    )
+    return f"; the condition{'s' * many} {said} in [domain] {mends}"

@@ -135,3 +135,11 @@ def test_without_its_last_condition_it_is_not(store, old, new):
     element, conditions = shown(store, old, new)
     text = assuming(without(store, "body") + element, conditions.rpartition(", ")[0])
     assert any(row.verdict is not Verdict.PROVED for row in decide(derive(parse(text))).rows)
+
+
+def test_of_conditions_that_the_values_break_that_is_said():
+    lever = LEVER.splitlines()[-1].replace("1 + q/x_0", "q/x_0")
+    text = SPEC.replace('["tip", "wall"], stiffness', '["end", "wall"], stiffness') + lever
+    (row,) = (row for row in unproved(assuming(text, '"x_0 > 0"')) if row.id == "welldef")
+    said = "the condition 'q > 0' in [domain] would mend it, but the values of the spec do not"
+    assert said in row.reason
