@@ -295,7 +295,8 @@ REFUSED = {
     ONE.replace("wall", "a b"): "components.one.nodes.base: 'a b' is not a label",
     ONE + "parameters = { dd = 1 }": "components.one.parameters.dd: 'dd' is no parameter of 'cell'",
     ONE + "parameters = { d = 'd_0' }": "components.one.parameters.d: 'd_0' is no parameter of this"
-    " spec; expected a number in the component's unit, N*s/m, or a parameter; declare it in [parameters]: d_0 = { value = 1.0, "
+    " spec; expected a number in the component's unit, N*s/m, or a parameter; declare it in "
+    "[parameters]: d_0 = { value = 1.0, "
     'unit = "N*s/m" }',
     ONE + "parameters = { d = '2*d' }": "'2*d' is no parameter of this spec; expected a number in "
     "the component's unit, N*s/m, or a parameter",
