@@ -10,7 +10,7 @@ from functools import reduce
 from piezo_sym.errors import STICKING
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.tidying import tidied
-from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Mul, Neg, names
+from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Div, Expr, Mul, Neg, names
 from piezo_sym.network import slope_of
 from piezo_sym.spec.tables import condition_text
 
@@ -18,6 +18,8 @@ from piezo_sym.spec.tables import condition_text
 JUMPS = f"; a law that jumps on purpose says discontinuous = true; {STICKING}"
 #: Whether law*letter, or a law without letter, is shown to be >= 0 in the domain.
 Shown = Callable[[Expr, str], bool]
+#: Functions that are positive wherever they have a value.
+ABOVE = frozenset({"exp", "cosh"})
 
 
 def mending(law: Expr, letter: str, shown: Shown) -> str:
@@ -40,7 +42,8 @@ def without_factors(claim: Cmp, positive: Callable[[Expr], bool]) -> Cmp:
     """Return a claim that a product is positive, or not negative, about its other factors alone."""
     if claim.op not in {">", ">="} or claim.right != ZERO:
         return claim
-    kept = [f for f in _factors(claim.left) if not positive(f)] or [claim.left]
+    factors = (f for f in _factors(claim.left) if not (isinstance(f, Call) and f.function in ABOVE))
+    kept = [f for f in factors if not positive(f)] or [claim.left]
     return Cmp(claim.op, tidied(reduce(mul, kept)), ZERO)
 
 

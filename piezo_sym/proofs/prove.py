@@ -270,7 +270,8 @@ def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: Solv
         found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
     if not found or not mended((*found,)):
         return ""
-    for claim in tuple(found):  # leave out conditions that the others imply
+    # leave out conditions that the others imply, long ones first
+    for claim in sorted(found, key=lambda claim: -len(found[claim])):
         rest = tuple(c for c in found if c != claim)
         if rest and mended(rest):
             del found[claim]

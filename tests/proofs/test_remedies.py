@@ -137,6 +137,16 @@ def test_without_its_last_condition_it_is_not(store, old, new):
     assert any(row.verdict is not Verdict.PROVED for row in decide(derive(parse(text))).rows)
 
 
+def test_of_conditions_that_imply_each_other_the_short_one_is_said():
+    text = assuming(HEATED_BY.replace("ENERGY", "k*x_0**2*exp(S/c)*exp(Q**2/(2*C*i_s))"), "")
+    text = text.replace(
+        'i_s = { value = 1.0, unit = "A" }', 'i_s = { value = 1.0, unit = "V*A*s" }'
+    )
+    text = text.replace('"R >= 0"', '"R >= 0", "c > 0", "C > 0", "i_s > 0"')
+    (row,) = (row for row in unproved(text) if row.id == "temperature")
+    assert row.reason.endswith("the condition 'x_0**2 > 0' in [domain] mends it")
+
+
 def test_of_conditions_that_the_values_break_that_is_said():
     lever = LEVER.splitlines()[-1].replace("1 + q/x_0", "q/x_0")
     text = SPEC.replace('["tip", "wall"], stiffness', '["end", "wall"], stiffness') + lever
