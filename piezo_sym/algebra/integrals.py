@@ -70,9 +70,10 @@ def _antiderivative(text: str, name: str, positive: list[str]) -> str | None:
         energy = energy.args[0][0]
     for function in BY_LOGARITHMS:
         energy = energy.replace(function, lambda arg, f=function: f(arg).rewrite(sp.log))
-    four = sp.Mul(4, sp.atan(1, evaluate=False), evaluate=False)
-    energy = energy.xreplace({sp.pi: four})
-    return str(energy) if vanishes(sp.diff(energy, x) - law) else None
+    if not vanishes(sp.diff(energy, x) - law):
+        return None
+    four = sp.Mul(4, sp.atan(1, evaluate=False), evaluate=False)  # laws lack pi
+    return str(energy.xreplace({sp.pi: four}))
 
 
 def main() -> None:

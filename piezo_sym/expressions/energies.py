@@ -9,12 +9,11 @@ the edge: it is positive on both sides, and so are the arguments of logarithms a
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import reduce
 from itertools import islice
 from math import prod
 from typing import final
 
-from piezo_sym.expressions.calculus import add, compared, derivative, div, inserted, mul, neg
+from piezo_sym.expressions.calculus import add, compared, derivative, inserted, mul, neg
 from piezo_sym.expressions.integrals import MAX_PARTS, NoFormError, by_rules, divided, slope_of
 from piezo_sym.expressions.reflection import reflected
 from piezo_sym.expressions.tidying import collected, settled, tidied
@@ -27,11 +26,7 @@ from piezo_sym.expressions.tree import (
     Div,
     Expr,
     If,
-    Mul,
-    Neg,
     Node,
-    Num,
-    Pow,
     Sym,
     children,
     decided,
@@ -41,8 +36,6 @@ from piezo_sym.expressions.tree import (
     walk,
 )
 
-#: Whole powers up to this one are split into factors.
-MOST_FACTORS = 8
 #: No energy is found for a law of more pieces, or of pieces of more than MAX_PARTS nodes.
 MOST_PIECES = 128
 Otherwise = Callable[[Expr, str, frozenset[str]], Expr | None]
@@ -221,42 +214,3 @@ def _pieces(node: Node) -> int:
 
 def _is_long(node: Node) -> bool:
     return next(islice(walk(node), MAX_PARTS, None), None) is not None
-
-
-def without_common_factors(node: Expr, name: str) -> Expr:
-    """Return a product or quotient, common factors in `name` cancelled: sinh(x)/x*x.
-
-    Only polynomials are cancelled, since they have a value everywhere: log(x)/log(x) stays.
-    """
-    above, below = _factors(node)
-    one: Expr = ONE
-    both = [f for f in above if f in below and name in names(f) and _is_polynomial(f)]
-    if not both:
-        return node
-    for factor in both:
-        if factor in below:
-            above.remove(factor)
-            below.remove(factor)
-    top, bottom = (reduce(mul, factors, one) for factors in (above, below))
-    return div(top, bottom)
-
-
-def _is_polynomial(node: Node) -> bool:
-    if isinstance(node, Pow) and (node.exponent < 0 or node.exponent.denominator != 1):
-        return False
-    known = isinstance(node, Num | Sym | Neg | Add | Mul | Pow)
-    return known and all(map(_is_polynomial, children(node)))
-
-
-def _factors(node: Expr) -> tuple[list[Expr], list[Expr]]:
-    """Return the factors of numerator and denominator, those of whole powers one by one."""
-    match node:
-        case Mul(left, right) | Div(left, right):
-            (above, below), (more, less) = _factors(left), _factors(right)
-            if isinstance(node, Div):
-                more, less = less, more
-            return [*above, *more], [*below, *less]
-        case Pow(base, exponent) if exponent.denominator == 1 and 0 < exponent <= MOST_FACTORS:
-            above, below = _factors(base)
-            return above * exponent.numerator, below * exponent.numerator
-    return [node], []

@@ -4,7 +4,7 @@ An electromagnet whose coil and drag heat a body; a gas chamber under a piston t
 with its shell; a mass that meets an end stop; one on springs that harden and soften.
 """
 
-from math import exp, sin, sinh, tanh
+from math import erf, exp, sin, sinh, tanh
 
 MAGNET = """
 [model]
@@ -132,7 +132,20 @@ SPRINGS = {
     "stop_by_energy": ('energy = "k*q**2/2 + k_2*max(q - g, 0)**2/2"', lambda q: stop(q)),
     "play": ('force = "k_2*deadzone(q, g)"', lambda q: 5e4 * (max(q - 0.01, 0) + min(q + 0.01, 0))),
     "hard": ('stiffness = "k*sinh(q/g)/(q/g)"', lambda q: sinh(q / 0.01)),
+    "part_hard": (
+        'stiffness = "k*(1 + sinh(q/g)/(q/g))"',
+        lambda q: 100.0 * q + sinh(q / 0.01),
+    ),
+    "part_waved": (
+        'stiffness = "k*(sin(q/g)/(q/g) + 2)"',
+        lambda q: 200.0 * q + sin(q / 0.01),
+    ),
+    "part_soft": (
+        'stiffness = "k*(2 + tanh(q/g)*g/q)"',
+        lambda q: 200.0 * q + tanh(q / 0.01),
+    ),
     "soft": ('force = "k*g*tanh(q/g)"', lambda q: tanh(q / 0.01)),
+    "error": ('force = "k*g*erf(q/g)"', lambda q: erf(q / 0.01)),
     "bump": ('force = "k*q*exp(-(q/g)**2)"', lambda q: 100.0 * q * exp(-((q / 0.01) ** 2))),
     "cable": ('energy = "k*g**2*cosh(q/g)"', lambda q: sinh(q / 0.01)),
 }

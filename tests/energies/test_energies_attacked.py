@@ -7,7 +7,7 @@ from math import exp, log
 
 import pytest
 
-from piezo_sym import derive, verify
+from piezo_sym import PiezoError, derive, verify
 from piezo_sym.proofs import decide
 from piezo_sym.spec.load import parse
 
@@ -139,6 +139,32 @@ def test_a_factor_without_a_value_is_not_left_out_of_a_stiffness(factor):
     text = SPRING.format("stiffness", f"k*{factor}/{factor}")
     text += "[initial]\nq = 0.001\n"
     assert verdicts(text)["welldef", "spring"] != "PROVED"
+
+
+@pytest.mark.some(2)
+@pytest.mark.parametrize(
+    "size",
+    [
+        "1 + cosh(q/g)/(q/g)",
+        "cosh(q/g)/(q/g)",
+        "2 + sign(q/g)/(q/g)",
+        "2 + abs(q/g)/(q/g)",
+        "2 + sqrt(abs(q/g))/(q/g)",
+        "2 + max(q/g + a, 0)/(q/g)",
+    ],
+)
+def test_a_stiffness_without_a_limit_at_rest_is_not_proved(size):
+    """Force and energy have a value there, as k*(q + g*cosh(q/g)); a stiffness has none."""
+    text = SPRING.format("stiffness", f"k*({size})") + "[initial]\nq = 0.001\n"
+    assert verdicts(text)["welldef", ""] == "REFUTED"
+
+
+@pytest.mark.parametrize(
+    "size", ["1 + sinh(q/g)/(q/g)/(q/g)", "sin(q/g)/(q/g) - 2", "-sinh(q/g)/(q/g)"]
+)
+def test_a_stiffness_that_is_infinite_or_negative_at_rest_is_refused(size):
+    with pytest.raises(PiezoError, match="outside the domain"):
+        derive(parse(SPEC + SPRING.format("stiffness", f"k*({size})")))
 
 
 @pytest.mark.parametrize(

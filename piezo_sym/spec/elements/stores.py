@@ -11,8 +11,9 @@ from fractions import Fraction
 from typing import Any, final
 
 from piezo_sym.expressions.calculus import add, div, inserted, mul, neg
-from piezo_sym.expressions.energies import slope, without_common_factors
+from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.parse import parse_law
+from piezo_sym.expressions.removable import slope_at, without_common_factors
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Num, Sym, rename
 from piezo_sym.spec.elements.base import Fault, Form, positive, state_symbol
 from piezo_sym.spec.elements.domains import PhysicalDomain, PhysicalVariable, PowerVariable
@@ -64,7 +65,7 @@ def store(size: Size) -> Form:
         if field == "energy":
             law, energy = slope(law, state), law
         elif field == size.field:
-            law = without_common_factors(_costate(size, element, state), state)
+            law = _continued(size, element, state)
         if element.joined > 1:
             law, energy = _joined_law(law, energy, state, element.joined)
         port = replace(_storage(size, element, name, branch, law), energy=energy)
@@ -72,13 +73,7 @@ def store(size: Size) -> Form:
         return _with_slip(size, element, port, name) if slips else (port,)
 
     def requires(element: Any, name: str) -> tuple[Cmp, ...]:
-        """Return that the size is positive, unless it may be 0/0 as in sinh(q)/q."""
-        if getattr(element, size.field) is None:
-            return ()
-        state = state_symbol(element, name)
-        value = rename(element.law(size.field), {letter: state})
-        law = _costate(size, element, state)
-        return (positive(value),) if without_common_factors(law, state) == law else ()
+        return _positive_size(size, element, state_symbol(element, name))
 
     return Form(
         fields=_fields(size),
@@ -187,10 +182,38 @@ def _stop_doc(sizes: tuple[Size, ...]) -> str:
 def _costate(size: Size, element: Any, state: str) -> Expr:
     """Return the co-state that a size gives; it may be 0/0 where it has a limit."""
     value = rename(element.law(size.field), {size.out.state_letter: state})
-    if not size.stiff:
-        return Div(Sym(state), value)
-    rest = parse_law(getattr(element, "rest", "0"), "rest")
-    return Mul(value, add(Sym(state), neg(rest)))
+    moved = _moved(size, element, state)
+    return Mul(value, moved) if size.stiff else Div(moved, value)
+
+
+def _continued(size: Size, element: Any, state: str) -> Expr:
+    """Return the co-state that a size gives, with its limit where it is 0/0 at rest."""
+    return without_common_factors(_costate(size, element, state), state, _rest(size, element))
+
+
+def _positive_size(size: Size, element: Any, state: str) -> tuple[Cmp, ...]:
+    """Return that the size is positive; of one that is 0/0 at rest, as sinh(q)/q, not negative.
+
+    Its sign is that of state times co-state, which has a value at rest, too; there the limit is the
+    co-state's slope.
+    """
+    if getattr(element, size.field) is None:
+        return ()
+    law, rest = _continued(size, element, state), _rest(size, element)
+    if law == _costate(size, element, state):
+        return (positive(rename(element.law(size.field), {size.out.state_letter: state})),)
+    limit = slope_at(law, state, rest)
+    signs = mul(_moved(size, element, state), law), *((limit,) if limit else ())
+    return tuple(Cmp(">=", sign, ZERO) for sign in signs)
+
+
+def _moved(size: Size, element: Any, state: str) -> Expr:
+    """Return how far a state is from rest."""
+    return add(Sym(state), neg(_rest(size, element)))
+
+
+def _rest(size: Size, element: Any) -> Expr:
+    return parse_law(getattr(element, "rest", "0"), "rest") if size.stiff else ZERO
 
 
 def _storage(size: Size, element: Any, name: str, branch: Branch, law: Expr) -> Storage:
