@@ -25,37 +25,58 @@ Finding = tuple[Verdict, Mapping[str, str] | None, str]
 def beside_own_values(
     questions: Iterable[Question], iphs: IPHS, solver: SolverLike
 ) -> Finding | None:
-    """Return the refutation that a law has a value, at the spec's own values but for some, or None.
+    """Return the refutation of a claim at the spec's own values but for some, or None.
 
     A solver's model is seldom in the domain where it bounds functions, such as the exponential of
     a temperature: what it gives to parameters and inputs is tried with the spec's own state.
     """
     given = iphs.model.parameters.keys() | iphs.model.inputs.keys()
     for question in questions:
-        if question.law is None or question.derived:
+        about = {*names(question.original)}
+        if question.meeting or question.derived or not about <= given:
             continue
         answer = solver.ask(replace(question, witness=True).query)
-        about = {*names(question.original)}
         # equations hold by construction: they give a temperature its value
         conditions = [condition for condition in question.where if condition.op != "="]
-        taken = {name: answer.model[name] for name in about & given & answer.model.keys()}
+        taken = {name: answer.model[name] for name in about & answer.model.keys()}
         points = spec_points(iphs, taken) if taken.keys() == about else ()
         for point in points:
-            # where conditions can be decided, the part without value counts whatever the drive is
-            driven = {**dict.fromkeys(names(question.law), Fraction(0)), **point}
             false = all_hold((question.original,), taken) is False
-            if false and all_hold(conditions, point) and _has_no_value(question.law, driven):
+            if false and all_hold(conditions, point) and _lacks_value(question.law, point):
                 return refutation(question, taken)
     return None
+
+
+def _lacks_value(law: Expr | Cmp | None, point: Mapping[str, Value]) -> bool:
+    """Return whether a law that a question is about, if any, has no value at a point of a state.
+
+    Where conditions can be decided, the part without value counts whatever the drive is.
+    """
+    if law is None:
+        return True
+    return _has_no_value(law, {**dict.fromkeys(names(law), Fraction(0)), **point})
 
 
 def checked_model(question: Question, answer: Answer, shown: tuple[str, ...]) -> Finding:
     """Return REFUTED if the model breaks the claim in the law itself, else OPEN."""
     values = {name: value for name, value in answer.model.items() if name in question.order}
     if not (all_hold(question.where, values) and _is_broken(question, values)):
-        reason = f"{question.label}: bounds on the functions in it do not decide it"
+        reason = f"{question.label}: {_why_undecided(question, values)}"
         return Verdict.OPEN, None, reason
     return refutation(question, {name: value for name, value in values.items() if name in shown})
+
+
+def _why_undecided(question: Question, values: Mapping[str, Value]) -> str:
+    """Return why a model refutes nothing: it is no point of the domain, as far as that is known."""
+    false = all_hold((question.original,), values) is False
+    for condition in question.where:
+        if false and condition not in question.branch and _has_no_value(condition, values):
+            tie, about = condition.op == "=", {*names(question.original), *names(condition)}
+            about -= {*names(condition.left)} if tie else set()
+            at = ", ".join(f"{name} = {value}" for name, value in values.items() if name in about)
+            what = spell(condition.left) if tie else condition_text(condition)
+            return f"it is false at {at}, where '{what}' has no value"
+    return "bounds on the functions in it do not decide it"
 
 
 def _is_broken(question: Question, values: Mapping[str, Value]) -> bool:

@@ -99,6 +99,49 @@ def test_it_is_refuted_with_a_witness(pairs, name, element, broken, numbers):
     assert found.reason
 
 
+WARM = """
+[model]
+name = "warm"
+[parameters]
+c = { value = 10.0, unit = "J/K" }
+T_0 = { value = 300.0, unit = "K" }
+x_0 = { value = 0.1, unit = "m" }
+w = { value = 1.0, unit = "1/s" }
+m = { value = 1.0, unit = "kg" }
+[inputs]
+T_e = { unit = "K", default = 300.0 }
+[domain]
+assume = ["c > 0", "T_0 > 0"]
+[elements]
+mass = { kind = "mass", at = "tip", mass = "m", state = "p" }
+cool = { kind = "ambient", body = "body", conductance = "c/T_0*T_0*w", input = "T_e" }
+[elements.body]
+kind = "storage"
+energy = "-T_0*c*exp(-S/c)*(1 + q**2/x_0**2)"
+[elements.body.states]
+q = { rate = "velocity", between = ["tip", "wall"] }
+S = { rate = "entropy" }
+"""
+
+
+@pytest.mark.parametrize("name", ["exergy", "environment"])
+def test_parameters_refute_a_row_about_a_temperature_that_solvers_do_not_know(name):
+    """They know the exponential by bounds: parameters are tried with the spec's own state."""
+    found = row(parse(WARM), name)
+    assert found.verdict is Verdict.REFUTED
+    assert Fraction(found.witness["w"]) < 0 < Fraction(found.witness["c"])
+
+
+def test_a_row_that_is_false_where_the_domain_has_no_value_says_so():
+    spring = 'spring = { kind = "spring", between = ["tip", "wall"], state = "z", stiffness = '
+    text = WARM.replace("[elements.body]", spring + '"k/(1 + (q/g)**6)" }\n[elements.body]', 1)
+    more = 'k = { value = 1.0, unit = "N/m" }\ng = { value = 1.0, unit = "m" }\n[inputs]'
+    found = row(parse(text.replace("[inputs]", more)), "welldef", "spring")
+    assert found.verdict is Verdict.OPEN
+    assert "g != 0: it is false at" in found.reason
+    assert "g = 0, z = 0, where 'k/(1 + (z/g)**6) > 0' has no value" in found.reason
+
+
 def test_a_shifted_branch_is_passive_and_jumps():
     """The branch (i + i_0) for i > i_0 takes power in, but jumps at i = i_0."""
     model = changed((DEAD_ZONE, branches(upper="i + i_0")))
