@@ -18,7 +18,7 @@ from flint import fmpq, fmpq_mpoly_ctx
 from .functions import KINKS
 from .laws import ARITHMETIC, InputError, Node, compare, need, negated, num, unkinked, walk
 
-SIZE, MAX_TERMS, MAX_PRODUCT, MAX_SIDES = 160, 3000, 60_000, 256
+SIZE, MAX_TERMS, MAX_PRODUCT, MAX_SIDES, MAX_POWER = 160, 3000, 60_000, 256, 16
 CTX = fmpq_mpoly_ctx.get([f"x{n}" for n in range(SIZE)], "lex")
 UNIT = CTX.constant(1)
 
@@ -125,7 +125,16 @@ class Field:
             return cast("Ratio", ARITHMETIC[node.op](*args))
         if args[0] == ZERO and node.op not in ("log", "table"):
             return ONE if node.op in ("exp", "cos", "cosh") else ZERO
-        return self.atom((node.op, *args), node)
+        return self._exp(args[0]) if node.op == "exp" else self.atom((node.op, *args), node)
+
+    def _exp(self, ratio: Ratio) -> Ratio:
+        """Return exp(a + 3*b) as exp(a)*exp(b)**3, each factor an atom (a large power is one)."""
+        found = ONE
+        for powers, factor in ratio.top.to_dict().items():
+            n, term = int(factor.p), Ratio(CTX.from_dict({powers: fmpq(1, factor.q)}), ratio.bottom)
+            n, term = (n, term) if abs(n) <= MAX_POWER else (1, term * constant(n))
+            found *= self.atom(("exp", term), Node("exp", (self.tree(term),))) ** n
+        return found
 
     def _choice(self, condition: Node, words: Told | None) -> Ratio:
         """Return the atom [difference > 0], or 1 minus the atom of the opposite."""
@@ -146,8 +155,9 @@ class Field:
 
         Such a factor must not cancel.
         """
-        if not self._places(ratio.top):
-            return ONE / ratio
+        plain = self._reduced(ratio.top) if self._places(ratio.top) else ratio.top
+        if not self._places(plain):
+            return ONE / Ratio(plain, ratio.bottom)
         size, factors = ratio.top.factor()
         found = Ratio(ratio.bottom / size)
         for own, times in ((Ratio(factor), times) for factor, times in factors):
@@ -213,8 +223,11 @@ class Field:
 
     def is_zero(self, ratio: Ratio) -> bool:
         """Return whether an expression vanishes by the relations of choices and roots."""
-        rest = reduce(lambda top, zero: divmod(top, zero)[1], self.relations.values(), ratio.top)
-        return bool(rest == 0)
+        return bool(self._reduced(ratio.top) == 0)
+
+    def _reduced(self, polynomial: Any) -> Any:
+        """Return a polynomial less multiples of what is zero by the relations."""
+        return reduce(lambda top, zero: divmod(top, zero)[1], self.relations.values(), polynomial)
 
     def tree(self, ratio: Ratio) -> Node:
         """Return an expression as a tree of its atoms."""

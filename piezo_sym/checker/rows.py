@@ -16,7 +16,7 @@ from .functions import KINKS
 from .laws import InputError, Node, build, compare, need, negated, num, subs, sym, symbols
 from .parts import stem
 from .prover import Claim, Prover, guarded, needed, partial, true
-from .slopes import vanishes
+from .slopes import equal, vanishes
 from .spec import Element, Spec
 from .system import Finding
 
@@ -103,6 +103,7 @@ class _Audit:
             for claim, path in dict.fromkeys(claims):
                 names = ", ".join(str(name[1]) for name in symbols(claim))[:80]
                 shown = prover.proves(claim, path)
+                shown = shown or (claim.value == "=" and equal(claim, path, prover))
                 need(shown, f"a comparison ({claim.value}) of {names} does not follow")
         except (InputError, ArithmeticError, RuntimeError) as error:
             reason = str(error) or type(error).__name__
@@ -140,8 +141,9 @@ class _Audit:
         own = [tree for e in parts for tree in (e.costate, e.law, e.laws.get("energy")) if tree]
         trees, z = own or list(element.laws.values()), ("z", name)
         claims = [claim for tree in trees for claim in partial(tree)]
-        if claims or element.law:
-            self._row("welldef", name, claims)
+        if claims or element.law or ("welldef", name) in self.stated:
+            terms = [t for t in self.found.terms if any(("x", e.name) in symbols(t) for e in parts)]
+            self._row("welldef", name, [*claims, *(c for t in terms for c in partial(t))])
         if self._bent(trees) and not element.jumps:
             self._row("continuous", name, _continuous(trees))
         if element.law:

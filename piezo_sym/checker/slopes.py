@@ -1,34 +1,54 @@
-"""Slopes of energies against laws, one branch at a time.
+"""Laws that vanish, one branch at a time: slopes of energies minus laws, jumps of laws.
 
-Input: slope minus law, the state, and a `Prover`.  Output: whether it vanishes on every branch but
-for single values of the state.  At such an edge a continuous energy has the slope of a continuous
-law if it has it on both sides; other claims show that neither jumps.  A domain that keeps a state
-at one value leaves no sides, so its conditions on the state are not used to find edges.
+Input: a law, and a `Prover`; of a slope, the state.  Output: whether it vanishes on every branch,
+a slope but for single values of the state.  At such an edge a continuous energy has the slope of a
+continuous law if it has it on both sides; other claims show that neither jumps.  A domain that
+keeps a state at one value leaves no sides, so its conditions on the state are not used to find
+edges.
 """
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from itertools import product
+from typing import Any, TypeAlias
 
+from . import laws
 from .field import Field
 from .functions import KINKS
-from .laws import InputError, Node, build, compare, derivative, need, negated, num, symbols
-from .laws import unkinked as by_choices
+from .laws import InputError, Node, build, compare, need, negated, num, subs, sym, symbols
 from .prover import Prover
 
 MOST = 200
 Path = tuple[Node, ...]
+Test: TypeAlias = Callable[[Node, Path], bool]
 
 
 def vanishes(difference: Node, state: Any, prover: Prover) -> bool:
     """Return whether a slope minus a law is zero on every branch that is more than an edge."""
     aside = Prover([c for c in prover.domain if state not in symbols(c)])
+    return _on_branches(difference, (), prover, lambda _, path: any(_edges(path, (state,), aside)))
+
+
+def equal(claim: Node, path: Path, prover: Prover) -> bool:
+    """Return whether two laws are equal on each branch, on an edge for the state that it fixes."""
+    difference = build("x - z", x=claim.args[0], z=claim.args[1])
+
+    def on_edge(tree: Node, here: Path) -> bool:
+        names = [name for name in symbols(tree) if name[0] == "x"]
+        edges = _edges(here, names, prover)
+        return any(_is_zero(subs(tree, edge), here, prover) for edge in edges)
+
+    return _on_branches(difference, path, prover, on_edge)
+
+
+def _on_branches(law: Node, path: Path, prover: Prover, or_else: Test) -> bool:
+    """Return whether each branch is zero, or has something else that is enough, or is empty."""
     try:
-        for count, (tree, path) in enumerate(_branches(_chosen(difference), ())):
+        for count, (tree, here) in enumerate(_branches(_chosen(law), path)):
             need(count < MOST, "too many branches")
             if not (
-                _is_zero(tree, path, prover)
-                or _is_edge(path, state, aside)
-                or prover.proves(compare(num(1), "<"), path)
+                _is_zero(tree, here, prover)
+                or or_else(tree, here)
+                or prover.proves(compare(num(1), "<"), here)
             ):
                 return False
     except InputError:
@@ -39,7 +59,7 @@ def vanishes(difference: Node, state: Any, prover: Prover) -> bool:
 def _chosen(node: Node) -> Node:
     """Return a tree with its kinks as choices."""
     tree = Node(node.op, tuple(map(_chosen, node.args)), node.value)
-    return _chosen(by_choices(tree)) if tree.op in KINKS else tree
+    return _chosen(laws.unkinked(tree)) if tree.op in KINKS else tree
 
 
 def _branches(node: Node, path: Path) -> Iterator[tuple[Node, Path]]:
@@ -74,12 +94,12 @@ def _is_zero(tree: Node, path: Path, prover: Prover) -> bool:
         return False
 
 
-def _is_edge(path: Path, state: Any, prover: Prover) -> bool:
-    """Return whether a path leaves at most one value of the state for given parameters."""
-    for left, right in (c.args for c in path if c.value in ("<=", ">=")):
-        slope = derivative(build("x - z", x=left, z=right), state)
+def _edges(path: Path, states: Iterable[Any], prover: Prover) -> Iterator[dict[Any, Node]]:
+    """Yield the states that have one value on a path for given parameters, with that value."""
+    for state, (left, right) in product(states, (c.args for c in path if c.value in ("<=", ">="))):
+        difference = build("x - z", x=left, z=right)
+        slope = laws.derivative(difference, state)
         fixed = all(role == "p" for role, *_ in symbols(slope))
         edge = fixed and prover.proves(compare(slope, "!="))
         if edge and prover.proves(compare(left, "=", right), path):
-            return True
-    return False
+            yield {state: build("x - y/m", x=sym(state), y=difference, m=slope)}

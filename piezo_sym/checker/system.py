@@ -216,8 +216,9 @@ class Finding:
             own = self.law(self.spec.elements[name], "costate", lane)
             costate = self.spec.elements[name].costate or num(0)
             slope = laws.derivative(subs(energy, meanings), ("x", name))
-            ops = {part.op for tree in (slope, costate) for part in walk(tree)}
-            if lane or "sum" in ops or ops.isdisjoint({"if", *KINKS}):
+            parts = [part for tree in (slope, costate) for part in walk(tree)]
+            ops = {part.op for part in parts if part.op != "**" or part.value.denominator > 1}
+            if "sum" in ops or ops.isdisjoint({"if", "**", *KINKS}):
                 self._equal("energy", given, own, f"dU/d{state}")
-            elif not self.field.is_zero(given - own):  # they may still agree on each branch
+            elif not self.field.is_zero(given - own):  # they may still agree, branch by branch
                 self.slopes[state] = Node("+", (slope, Node("neg", (costate,)))), ("x", name)
