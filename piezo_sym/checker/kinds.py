@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 _DOMAINS = """
 E, gnd, between, voltage, v, V, current, i, A, capacitor, capacitance, F Q:C, inductor, inductance H phi:Wb, x/inductance, resistor
-M, wall, at, velocity, v, m/s, force, f, N, mass, mass, kg p:kg*m/s, spring, stiffness N/m q:m; rest? m, stiffness*(x - rest), damper
-R, frame, at, angular_velocity, omega, rad/s, torque, tau, N*m, inertia, inertia, kg*m**2 L:N*m*s, torsion_spring, stiffness N*m/rad theta:rad; rest? rad, stiffness*(x - rest), rotational_damper
+M, wall, at, velocity, v, m/s, force, f, N, mass, mass, kg p:kg*m/s, spring, stiffness N/m q:m; rest? m, stiffness*x, damper
+R, frame, at, angular_velocity, omega, rad/s, torque, tau, N*m, inertia, inertia, kg*m**2 L:N*m*s, torsion_spring, stiffness N*m/rad theta:rad; rest? rad, stiffness*x, rotational_damper
 H, tank, between, pressure, dp, Pa, flow, flow, m**3/s, accumulator, capacitance, m**3/Pa V:m**3, inertance, inertance kg/m**4 G:Pa*s, x/inertance, orifice
 """  # noqa: E501
 _WITHIN = """
@@ -49,7 +49,7 @@ heat_source    | heat       | | | + |                             | into input |
 class Kind(NamedTuple):
     """A kind: `ends` are node fields with domains, `laws` law fields with unit and letters.
 
-    `fields` are all fields, and whether each is needed.
+    `fields` are all fields, and whether each is needed; in `costate` x is less the rest length.
     """
 
     form: str

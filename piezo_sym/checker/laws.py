@@ -9,7 +9,7 @@ import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
-from functools import cache
+from functools import cache, reduce
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -140,6 +140,25 @@ def on_pieces(node: Node, path: tuple[Node, ...] = ()) -> Iterator[tuple[Node, t
 def _swapped(node: Node, old: Node, new: Node) -> Node:
     args = (_swapped(arg, old, new) for arg in node.args)
     return new if node == old else Node(node.op, tuple(args), node.value)
+
+
+def cancelled(law: Node, factor: Node) -> Node:
+    """Return a product without a factor that it also divides by, or else the same tree."""
+    sides = _factors(law)
+    if not all(factor in side for side in sides):
+        return law
+    for side in sides:
+        side[side.index(factor)] = num(1)
+    return Node("/", tuple(reduce(lambda a, b: Node("*", (a, b)), side) for side in sides))
+
+
+def _factors(node: Node) -> tuple[list[Node], list[Node]]:
+    """Return the factors that a tree multiplies, and those that it divides by."""
+    if node.op not in ("*", "/"):
+        return [node], []
+    (above, below), (more, less) = map(_factors, node.args)
+    more, less = (more, less) if node.op == "*" else (less, more)
+    return [*above, *more], [*below, *less]
 
 
 def derivative(node: Node, by: Any) -> Node:

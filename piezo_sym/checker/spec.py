@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from . import laws
 from .field import Field
 from .kinds import KINDS, REFERENCES, UNITS, Kind
-from .laws import InputError, Node, build, compare, need, num, sym, symbols
+from .laws import InputError, Node, build, cancelled, compare, need, num, sym, symbols
 from .parts import parts, slipping_store, stem
 from .units import Dimension, faults, unit
 
@@ -87,7 +87,7 @@ def read_spec(text: str) -> Spec:
 class _Reader:
     def __init__(self, tables: dict[str, dict[str, Any]]) -> None:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
-        entries = tables["elements"]
+        entries, self.quotients = tables["elements"], set[str]()
         self.limits = {n: e["limit"] for n, e in entries.items() if e["kind"] == "stop"}
         entries |= {name: slipping_store(name, entries[name]) for name in self.limits}
         self.parameters = self._values("parameters", "value", "p")
@@ -206,8 +206,13 @@ class _Reader:
             return found
         if kind.form == "store" and given[0] != first:
             return own[given[0]]
-        parts = {"rest": num(0), **own, "x": sym(("x", name))}
-        return build(kind.costate, **parts) if kind.costate else None
+        if kind.form == "body" or not kind.costate:
+            return own.get(kind.costate)
+        x, rest = sym(("x", name)), own.get("rest", num(0))
+        x = build("x - z", x=x, z=rest) if rest != num(0) else x
+        limit = cancelled(law := build(kind.costate, **own, x=x), x)
+        self.quotients |= {name} if limit != law else set()  # as sinh(q)/q, which is 0/0 at rest
+        return limit
 
     def _pairs(self, name: str, ends: list[tuple[str, str]]) -> tuple[tuple[Any, Any], ...]:
         """Return the node pairs of an element; raises if a node is in two domains."""
@@ -253,7 +258,8 @@ class _Reader:
         for element in self.elements.values():
             trees += element.laws.values()
             first = element.laws.get(next(iter(element.kind.laws), ""))
-            if first and element.costate and "energy" not in element.laws:
+            sized = element.costate and "energy" not in element.laws
+            if first and sized and element.name not in self.quotients:
                 own = [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
                 for tree in own if element.kind.form == "body" else [first]:
                     yield compare(tree, ">")

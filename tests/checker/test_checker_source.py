@@ -6,7 +6,7 @@ import tokenize
 import pytest
 from stated import CHECKER
 
-MOST_LINES = 1870
+MOST_LINES = 1880
 ALLOWED = {"cvc5", "flint", "pint", *sys.stdlib_module_names}
 SOURCES = sorted(CHECKER.glob("*.py"))
 

@@ -99,3 +99,32 @@ def test_roots_in_banks_are_compared_in_each_lane(old, new):
     assert old in energy
     proofs["system"]["energy"] = energy.replace(old, new, 1)
     assert (("energy", "") in refused(COILS, proofs)) == bool(new)
+
+
+@pytest.mark.parametrize("rest", ["", 'rest = "s", '])
+def test_a_size_that_is_zero_by_zero_at_rest_is_confirmed(rest):
+    text = SPRING.replace('force = "LAW"', f'{rest}stiffness = "k*sinh((q - s)/r)*r/(q - s)"')
+    text = text if rest else text.replace("(q - s)", "q")
+    proofs = stated(text)
+    assert all(row["verdict"] == "PROVED" for row in proofs["obligations"])
+    assert refused(text, proofs) == {}
+    proofs["system"]["energy"] = proofs["system"]["energy"].replace("cosh", "sinh", 1)
+    assert refused(text, proofs).keys() == {("skew", ""), ("energy", "")}
+
+
+@pytest.mark.parametrize(
+    "stiffness",
+    [
+        "k*sinh(q/r)*r/(q - s)",
+        "k*sinh(q/r)*r**2/(q*q)",
+        "k*sinh(q/r)*r**2/q**2",
+        "k*log(q/r)*r/q",
+        "k*q/max(q, 0)",
+    ],
+)
+def test_a_size_without_a_value_elsewhere_is_not_confirmed(stiffness):
+    text = SPRING.replace('force = "LAW"', f'stiffness = "{stiffness}"')
+    proofs = stated(SPRING.replace("LAW", "k*r*sinh(q/r)"))
+    row = {"id": "welldef", "element": "spring", "verdict": "PROVED"}
+    proofs["obligations"] += [row, {**row, "element": None}]
+    assert ("welldef", "spring") in refused(text, proofs)
