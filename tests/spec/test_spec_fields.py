@@ -201,7 +201,7 @@ def test_a_misspelled_key_is_one_fault():
 HINTS = [
     (
         ('stiffness = "k"', 'stiffness = "k*Q_C"'),
-        "add to [domain]: 'k*Q_C > 0', 'C > 0'",
+        'add to assume in [domain]: "k*Q_C > 0", "C > 0"',
     ),
     (('"T > T_0"', '"Q > 0"'), "states go by their own symbols: Q_C"),
     (('"T_0*exp(S/c_0)"', '"T_0*exp(s/c_0)"'), "unknown name 's'; did you mean 'S'?"),
