@@ -5,7 +5,7 @@ zero, every question answered with `unsat`, and every row it rests on PROVED.  R
 witness that was evaluated exactly in the law itself.  All else is OPEN, with the reason.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -275,12 +275,14 @@ def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: Solv
         rest = tuple(c for c in found if c != claim)
         if rest and mended(rest):
             del found[claim]
-    said, many = " and ".join(f"'{text}'" for text in found.values()), len(found) > 1
-    mends = (
-        f"mend{'' if many else 's'} it"
-        if all(map(kept, found))
-        else (
-            "would mend it, but the values of the spec do not satisfy " + ("them" if many else "it")
-        )
-    )
+    return _in_words([*found.values()], kept=all(map(kept, found)))
+
+
+def _in_words(conditions: Sequence[str], *, kept: bool) -> str:
+    """Return that conditions mend a row; `kept` if the values of the spec satisfy them."""
+    said, many = " and ".join(f"'{text}'" for text in conditions), len(conditions) > 1
+    mends = f"mend{'' if many else 's'} it"
+    if not kept:
+        which = "them" if many else "it"
+        mends = f"would mend it, but the values of the spec do not satisfy {which}"
     return f"; the condition{'s' * many} {said} in [domain] {mends}"

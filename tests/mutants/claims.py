@@ -151,7 +151,7 @@ a model that breaks the claim is a proof
   = a*v
 ## proofs/refutation
 an answer that bounds do not decide is a proof
-  - reason = f"{question.label}: bounds on the functions in it do not decide it"
+  - reason = f"{question.label}: {_why_undecided(question, values)}"
   -         return Verdict.OPEN, None, reason
   + return None
   = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;

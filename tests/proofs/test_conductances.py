@@ -66,7 +66,11 @@ def test_too_many_kinks_are_open():
         ("lam", "; the conditions 'lam >= 0' and 'T_e > 0' in [domain] mend it"),
         ("lam**2/lam", "; the conditions 'lam > 0' and 'T_e > 0' in [domain] mend it"),
         ("abs(lam)", "; the condition 'T_e > 0' in [domain] mends it"),
-        ("lam*(c*T_0 - 2*c*T_a)/(c*T_0)", ""),
+        (
+            "lam*(c*T_0 - 2*c*T_a)/(c*T_0)",
+            "; the conditions 'T_e > 0' and 'lam*(c*T_0 - 2*(c*T_a)) >= 0' in [domain] would mend "
+            "it, but the values of the spec do not satisfy them",
+        ),
     ],
 )
 def test_what_mends_heat_exchange_with_an_environment_is_said(law, said):
@@ -74,8 +78,7 @@ def test_what_mends_heat_exchange_with_an_environment_is_said(law, said):
     for row in decided(text)[1:]:
         assert row.verdict is Verdict.REFUTED
         assert row.reason.endswith(said)
-        assert ("mend" in row.reason) == bool(said)
-    if said:
+    if "would" not in said:
         conditions = ", ".join(f'"{condition}"' for condition in said.split("'")[1::2])
         mended = decided(text.replace("assume = []", f"assume = [{conditions}]"))
         assert {row.verdict for row in mended} == {Verdict.PROVED}
