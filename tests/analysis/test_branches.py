@@ -27,6 +27,7 @@ def states(frequency):
     )
 
 
+@pytest.mark.long
 def test_there_is_one_jump_and_it_goes_up(found):
     (jump,) = found.jumps
     assert jump.upward

@@ -526,6 +526,7 @@ def test_a_free_position_is_where_the_start_and_the_drive_put_it(start, phase):
     assert found.initial["q"] == pytest.approx(x, abs=1e-6 * abs(v) / omega)
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("cache")
 @pytest.mark.filterwarnings("ignore:nothing settles")
 def test_a_free_position_that_drifts_stays_at_its_start_and_the_others_repeat():
