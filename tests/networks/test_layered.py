@@ -65,7 +65,8 @@ def test_a_stack_of_200_layers_runs(tmp_path, monkeypatch):
     names = [f"{name}_{j}" for j in range(1, n + 1) for name in ("q", "p", "Q", "phi", "S")]
     found = [float(ds[name][-1]) for name in names]
     assert (np.abs(found - end) / scale).max() < 1e-6
-    balance = ds["energy"] - ds["energy"][0] - ds["supplied"]
+    supplied = sum(ds[name] for name in ds.data_vars if str(name).startswith("supplied_"))
+    balance = ds["energy"] - ds["energy"][0] - supplied
     assert np.abs(balance).max() < 1e-12 * np.abs(ds["energy"]).max()
 
 
