@@ -39,7 +39,7 @@ def without_common_factors(node: Expr, name: str, place: Expr = ZERO) -> Expr:
     Only polynomials are cancelled, since they have a value everywhere: log(x)/log(x) stays.  So
     does what is no multiple of the distance from `place`, as cosh(x)/x*x: there node/x is infinite.
     """
-    above, below = _factors(node)
+    above, below = factors(node)
     changed = False
     for factor in [f for f in above if name in names(f) and _is_polynomial(f)]:
         others = [*above]
@@ -70,7 +70,7 @@ def _without(
         below.remove(factor)
         return above, below
     for n, part in enumerate(above):
-        terms = [(term, _without(factor, *_factors(term))) for term in _terms(part)]
+        terms = [(term, _without(factor, *factors(term))) for term in _terms(part)]
         if any(found for _, found in terms):
             whole = (_quotient(*found) if found else mul(term, factor) for term, found in terms)
             return [*above[:n], add(*whole), *above[n + 1 :]], below
@@ -85,6 +85,7 @@ def _terms(node: Expr) -> tuple[Expr, ...]:
 
 
 def _quotient(above: list[Expr], below: list[Expr]) -> Expr:
+    """Return the quotient of two products."""
     one: Expr = ONE
     top, bottom = (reduce(mul, factors, one) for factors in (above, below))
     return div(top, bottom)
@@ -141,18 +142,18 @@ def _is_polynomial(node: Node) -> bool:
     return known and all(map(_is_polynomial, children(node)))
 
 
-def _factors(node: Expr) -> tuple[list[Expr], list[Expr]]:
-    """Return the factors of numerator and denominator, those of whole powers one by one."""
+def factors(node: Expr, most: int = MOST_FACTORS) -> tuple[list[Expr], list[Expr]]:
+    """Return the factors of numerator and denominator, those of powers up to `most` one by one."""
     match node:
         case Mul(left, right) | Div(left, right):
-            (above, below), (more, less) = _factors(left), _factors(right)
+            (above, below), (more, less) = factors(left, most), factors(right, most)
             if isinstance(node, Div):
                 more, less = less, more
             return [*above, *more], [*below, *less]
-        case Pow(base, exponent) if exponent.denominator == 1 and 0 < exponent <= MOST_FACTORS:
-            above, below = _factors(base)
+        case Pow(base, exponent) if exponent.denominator == 1 and 0 < exponent <= most:
+            above, below = factors(base, most)
             return above * exponent.numerator, below * exponent.numerator
         case Neg(arg):
-            above, below = _factors(arg)
+            above, below = factors(arg, most)
             return [Num(Fraction(-1)), *above], below
     return [node], []

@@ -11,6 +11,7 @@ from functools import reduce
 from piezo_sym.errors import SpecError, listing, quote
 from piezo_sym.expressions.energies import antiderivative
 from piezo_sym.expressions.parse import parse_condition
+from piezo_sym.expressions.removable import factors
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Div, Expr, Mul, Sym, names, replace, walk
 from piezo_sym.spec.elements.marks import LawField
@@ -110,18 +111,10 @@ def _energy(port: Storage | Body, warm: Mapping[str, Expr]) -> Expr | None:
     found = port.energy if given else antiderivative(replace(port.law, warm), port.state)
     if found is None:
         return None
-    above, below = _factors(replace(found, warm) if given else found)
+    whole = replace(found, warm) if given else found
+    above, below = factors(whole, most=1)  # 1/(L/x) is x/L
     top = reduce(Mul, above)
     return Div(top, reduce(Mul, below)) if below else top
-
-
-def _factors(node: Expr) -> tuple[list[Expr], list[Expr]]:
-    """Return the factors of the numerator and of the denominator: 1/(L/x) is x/L."""
-    if not isinstance(node, Mul | Div):
-        return [node], []
-    (above, below), (more, less) = _factors(node.left), _factors(node.right)
-    more, less = (less, more) if isinstance(node, Div) else (more, less)
-    return [*above, *more], [*below, *less]
 
 
 def _state(port: Storage | Body) -> str:
