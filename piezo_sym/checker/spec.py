@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from . import laws
 from .field import Field
 from .kinds import KINDS, REFERENCES, UNITS, Kind
-from .laws import InputError, Node, build, cancelled, compare, need, num, sym, symbols
+from .laws import InputError, Node, build, cancelled, compare, need, num, subs, sym, symbols
 from .parts import parts, slipping_store, stem
 from .units import Dimension, faults, unit
 
@@ -53,8 +53,7 @@ class Element(NamedTuple):
 class Spec(NamedTuple):
     """A spec: `words` are the meanings of names in [domain], `initial` is by element.
 
-    `states` is the element of each state, `lists` the bank of each parameter with a value per lane,
-    `faults` are those of units.
+    `states` is the element of each state, `lists` the bank of a parameter, `faults` are of units.
     """
 
     parameters: Mapping[str, tuple[Fraction, ...]]
@@ -87,7 +86,7 @@ def read_spec(text: str) -> Spec:
 class _Reader:
     def __init__(self, tables: dict[str, dict[str, Any]]) -> None:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
-        entries, self.quotients = tables["elements"], set[str]()
+        entries, self.quotients = tables["elements"], dict[str, Node]()
         self.limits = {n: e["limit"] for n, e in entries.items() if e["kind"] == "stop"}
         entries |= {name: slipping_store(name, entries[name]) for name in self.limits}
         self.parameters = self._values("parameters", "value", "p")
@@ -211,7 +210,7 @@ class _Reader:
         x, rest = sym(("x", name)), own.get("rest", num(0))
         x = build("x - z", x=x, z=rest) if rest != num(0) else x
         limit = cancelled(law := build(kind.costate, **own, x=x), x)
-        self.quotients |= {name} if limit != law else set()  # as sinh(q)/q, which is 0/0 at rest
+        self.quotients |= {name: subs(limit, {("x", name): rest})} if limit != law else {}
         return limit
 
     def _pairs(self, name: str, ends: list[tuple[str, str]]) -> tuple[tuple[Any, Any], ...]:
@@ -261,16 +260,18 @@ class _Reader:
             sized = element.costate and "energy" not in element.laws
             if first and sized and element.name not in self.quotients:
                 own = [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
-                for tree in own if element.kind.form == "body" else [first]:
-                    yield compare(tree, ">")
+                sizes = own if element.kind.form == "body" else [first]
+                yield from (compare(tree, ">") for tree in sizes)
+            there = self.quotients.get(element.name, num(0))  # sinh(q)/q is 0/0 at rest, not 1/0
+            yield from () if Field().same(there, num(0)) else (compare(there, "="),)
             if limit := self.limits.get(element.name):
                 words = {w: s for w, s in self.words.items() if s[0] == "p"}
                 yield compare(self._resolved(limit, words), ">=")
-        for part in (part for tree in trees for part in laws.walk(tree)):
-            if part.op in ("deadzone", "saturate"):
-                given = any(role in "zr" for role, _ in symbols(part.args[1]))
-                need(not given, "a width depends on the law's letter")
-                yield compare(part.args[1], ">=")
+        all_parts = (part for tree in trees for part in laws.walk(tree))
+        for width in (p.args[1] for p in all_parts if p.op in ("deadzone", "saturate")):
+            given = any(role in "zr" for role, _ in symbols(width))
+            need(not given, "a width depends on the law's letter")
+            yield compare(width, ">=")
 
     def _starts(self, state: str) -> tuple[Node, ...]:
         """Return the initial value of a state per lane: texts have units, numbers are in SI."""
@@ -294,7 +295,6 @@ class _Reader:
                 bank, size = next(iter(users), None) or ("", 0)
                 need(len(users) == 1 and size == len(values), f"parameters.{name} fits no bank")
                 lists[name] = banks["p", name] = bank
-        for tree in conditions:
-            owners = {banks[symbol] for symbol in symbols(tree) if symbol in banks}
-            need(len(owners) < 2, "a condition mixes lanes of two banks")
+        mixed = (len({banks[s] for s in symbols(tree) if s in banks}) > 1 for tree in conditions)
+        need(not any(mixed), "a condition mixes lanes of two banks")
         return lists

@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import reduce
 
 from piezo_sym.expressions.calculus import add, derivative, div, mul, neg, rebuilt
+from piezo_sym.expressions.exact_eval import value_of
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ONE,
@@ -23,7 +24,6 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     Sym,
-    children,
     names,
     rebuild,
     walk,
@@ -34,28 +34,37 @@ MOST_FACTORS = 8
 
 
 def without_common_factors(node: Expr, name: str, place: Expr = ZERO) -> Expr:
-    """Return a product or quotient, common factors in `name` cancelled: (1 + sinh(x)/x)*x.
+    """Return a product or quotient, its distance from `place` cancelled: (1 + sinh(x)/x)*x.
 
-    Only polynomials are cancelled, since they have a value everywhere: log(x)/log(x) stays.  So
-    does what is no multiple of the distance from `place`, as cosh(x)/x*x: there node/x is infinite.
+    Another factor stays, as (n*x + n)/(n*x + n) has no value for n = 0.  So does what is no
+    multiple of the distance, as cosh(x)/x*x: there node/x is infinite.  Of kinks see `value_at`.
     """
     above, below = factors(node)
-    changed = False
-    for factor in [f for f in above if name in names(f) and _is_polynomial(f)]:
+    moved, changed = add(Sym(name), neg(place)), False
+    for _ in range(above.count(moved)):
         others = [*above]
-        others.remove(factor)
-        found = _without(factor, others, below)
+        others.remove(moved)
+        found = _without(moved, others, below)
         if found:
             changed, (above, below) = True, found
     law = _quotient(above, below) if changed else node
-    with suppress(ZeroDivisionError):
+    with suppress(ArithmeticError, ValueError):
         return law if changed and _vanishes(law, name, place) else node
     return node
 
 
+def value_at(node: Expr, name: str, place: Expr) -> Expr:
+    """Return what a law without common factors is at `place`, if it has kinks there, else 0.
+
+    Its parameters decide whether max(x - gap, 0) is zero there: then (1/x)*max(x - gap, 0) is
+    bounded, and else infinite.
+    """
+    return _at(node, name, place) if any(map(_has_kink, walk(node))) else ZERO
+
+
 def slope_at(node: Expr, name: str, place: Expr) -> Expr | None:
     """Return the slope of a law for one value of a name; None if it has a kink or no value."""
-    with suppress(ZeroDivisionError):
+    with suppress(ArithmeticError, ValueError):
         slope = _at(derivative(node, name), name, place)
         return slope if all(map(_has_slope, walk(node))) else None
     return None
@@ -95,7 +104,7 @@ def _vanishes(node: Expr, name: str, place: Expr) -> bool:
     """Return whether a law is at most a multiple of the distance from `place`, close to it.
 
     It is zero there, and has a slope: it is made of functions with derivatives.  A factor with a
-    kink may be zero or not, as max(x - gap, 0) is: its parameters decide that.
+    kink is so if it is zero there, see `value_at`.  Raises where it has no value there.
     """
     match node:
         case Neg(arg):
@@ -104,11 +113,14 @@ def _vanishes(node: Expr, name: str, place: Expr) -> bool:
             return _vanishes(left, name, place) or _vanishes(right, name, place)
         case Div(left, right):
             return _at(right, name, place) != ZERO and _vanishes(left, name, place)
-        case If():
-            return True
-        case Call(function) if not RECORDS[function].smooth:
-            return True
+    if _has_kink(node) and name in names(node):
+        _at(node, name, place)
+        return all(_has_slope(part) or _has_kink(part) for part in walk(node))
     return _at(node, name, place) == ZERO and all(map(_has_slope, walk(node)))
+
+
+def _has_kink(node: Node) -> bool:
+    return isinstance(node, If) or (isinstance(node, Call) and not RECORDS[node.function].smooth)
 
 
 def _has_slope(node: Node) -> bool:
@@ -120,7 +132,7 @@ def _has_slope(node: Node) -> bool:
 def _at(node: Expr, name: str, place: Expr) -> Expr:
     """Return a law for one value of a name, as far as it is known.
 
-    Raises `ZeroDivisionError` where it divides by zero.
+    Raises `ArithmeticError` or `ValueError` where it has no value.
     """
     if node == Sym(name):
         return place
@@ -130,16 +142,12 @@ def _at(node: Expr, name: str, place: Expr) -> Expr:
             raise ZeroDivisionError
         case Pow(base, exponent) if base == ZERO and exponent < 0:
             raise ZeroDivisionError
+        case If() | Call() if _has_kink(parts) and not names(parts):
+            value = value_of(parts, {})
+            return Num(value) if isinstance(value, Fraction) else parts
         case Call(function, (Num(value), *_)) if known := RECORDS[function].known:
             return Num(Fraction(known[1])) if value == known[0] else parts
     return rebuilt(parts, lambda part: part)
-
-
-def _is_polynomial(node: Node) -> bool:
-    if isinstance(node, Pow) and (node.exponent < 0 or node.exponent.denominator != 1):
-        return False
-    known = isinstance(node, Num | Sym | Neg | Add | Mul | Pow)
-    return known and all(map(_is_polynomial, children(node)))
 
 
 def factors(node: Expr, most: int = MOST_FACTORS) -> tuple[list[Expr], list[Expr]]:

@@ -128,3 +128,11 @@ def test_a_size_without_a_value_elsewhere_is_not_confirmed(stiffness):
     row = {"id": "welldef", "element": "spring", "verdict": "PROVED"}
     proofs["obligations"] += [row, {**row, "element": None}]
     assert ("welldef", "spring") in refused(text, proofs)
+
+
+@pytest.mark.parametrize("size", ["max(q + r, 0)*r/q", "cosh(q/r)*r/q", "(q + s)/q"])
+def test_a_size_that_is_infinite_at_rest_is_not_confirmed(size):
+    text = SPRING.replace('"n > 0"', '"n > 0", "q >= 0"') + "[initial]\nq = 0.1\n"
+    proofs = forged(text.replace("LAW", "k*q"))
+    text = text.replace('force = "LAW"', f'stiffness = "k*{size}"')
+    assert ("domain", "") in refused(text, proofs)

@@ -167,6 +167,28 @@ def test_a_stiffness_that_is_infinite_or_negative_at_rest_is_refused(size):
         derive(parse(SPEC + SPRING.format("stiffness", f"k*({size})")))
 
 
+def test_a_factor_that_parameters_make_zero_is_not_left_out_of_a_stiffness():
+    """For m_2 = 0 the stiffness is 0/0 wherever the spring is."""
+    text = SPRING.format("stiffness", "k*(m_2*q + m_2*g)/(m_2*q + m_2*g)")
+    assert verdicts(text)["welldef", ""] == "REFUTED"
+
+
+@pytest.mark.parametrize(
+    "force",
+    ["max(q/g + 1, 0)", "(cosh(q/g) if q > -g else 1)", "table(q/g, -1, -1, 1, 2, 2, 3)"],
+)
+def test_a_kink_hides_no_stiffness_that_is_infinite_at_rest(force):
+    """With q >= 0 alone displacement times force is nowhere negative; at rest there is a force."""
+    text = SPRING.format("stiffness", f"k*{force}/(q/g)") + "[initial]\nq = 0.001\n"
+    with pytest.raises(PiezoError, match="outside the domain"):
+        verdicts(text, ', "q >= 0"')
+
+
+def test_a_gap_may_be_in_a_stiffness():
+    text = SPRING.format("stiffness", "k*max(q - g, 0)/q")
+    assert {*verdicts(text).values()} == {"PROVED"}
+
+
 @pytest.mark.parametrize(
     "energy", ["p**2/(2*m_2)", "p**2/(2*m_1) + U_0*log(m_2/m_1)", "p**2/2*m_2/(m_1*m_2)"]
 )

@@ -13,7 +13,7 @@ from typing import Any, final
 from piezo_sym.expressions.calculus import add, div, inserted, mul, neg
 from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.removable import slope_at, without_common_factors
+from piezo_sym.expressions.removable import slope_at, value_at, without_common_factors
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Num, Sym, rename
 from piezo_sym.spec.elements.base import Fault, Form, positive, state_symbol
 from piezo_sym.spec.elements.domains import PhysicalDomain, PhysicalVariable, PowerVariable
@@ -195,7 +195,7 @@ def _positive_size(size: Size, element: Any, state: str) -> tuple[Cmp, ...]:
     """Return that the size is positive; of one that is 0/0 at rest, as sinh(q)/q, not negative.
 
     Its sign is that of state times co-state, which has a value at rest, too; there the limit is the
-    co-state's slope.
+    co-state's slope.  One with a kink is bounded there if the co-state is zero.
     """
     if getattr(element, size.field) is None:
         return ()
@@ -204,7 +204,9 @@ def _positive_size(size: Size, element: Any, state: str) -> tuple[Cmp, ...]:
         return (positive(rename(element.law(size.field), {size.out.state_letter: state})),)
     limit = slope_at(law, state, rest)
     signs = mul(_moved(size, element, state), law), *((limit,) if limit else ())
-    return tuple(Cmp(">=", sign, ZERO) for sign in signs)
+    here = value_at(law, state, rest)
+    bounded = (Cmp("<=", here, ZERO), Cmp(">=", here, ZERO)) if here != ZERO else ()
+    return (*(Cmp(">=", sign, ZERO) for sign in signs), *bounded)
 
 
 def _moved(size: Size, element: Any, state: str) -> Expr:
