@@ -245,7 +245,8 @@ def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: Solv
     points, known = spec_points(iphs), frozenset[str]()
     known = known.union(*points)
     broken = [q.original for q in questions if _failure(q, solver)]
-    if not all(names(claim) and known >= {*names(claim)} for claim in broken):
+    # [domain] takes no =, as of a jump
+    if not all(claim.op != "=" and names(claim) and known >= {*names(claim)} for claim in broken):
         return ""
 
     def kept(condition: Cmp) -> bool:
@@ -268,7 +269,7 @@ def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: Solv
         warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
         text = condition_text(way)
         found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
-    if not found or not mended((*found,)):
+    if not found or not all(map(names, found)) or not mended((*found,)):
         return ""
     # leave out conditions that the others imply, long ones first
     for claim in sorted(found, key=lambda claim: -len(found[claim])):

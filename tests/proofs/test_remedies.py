@@ -153,3 +153,15 @@ def test_of_conditions_that_the_values_break_that_is_said():
     (row,) = (row for row in unproved(assuming(text, '"x_0 > 0"')) if row.id == "welldef")
     said = "the condition 'q > 0' in [domain] would mend it, but the values of the spec do not"
     assert said in row.reason
+
+
+@pytest.mark.parametrize(
+    ("temperature", "known"),
+    [("T_0*(1 - S/c)", "T > 0"), ("T_0*(2 + S/c) if S > 0 else T_0*exp(S/c)", "c > 0")],
+)
+def test_no_condition_is_shown_that_domain_cannot_have(temperature, known):
+    """-1 > 0 holds nowhere, and [domain] takes no equation of two branches."""
+    text = assuming(SPEC.replace("T_0*exp(S/c)", temperature), f'"{known}"')
+    (row,) = (row for row in unproved(text) if row.id == "temperature")
+    assert row.verdict is Verdict.REFUTED
+    assert "in [domain]" not in row.reason
