@@ -41,6 +41,8 @@ GIVE = "the law's energy that was found could not be verified: give it, energy =
 MOST_TEXT = 24
 #: Open questions of an obligation after which no more are asked.
 MOST_OPEN = 4
+#: No condition that mends an obligation of more questions is looked for: each is asked again.
+MOST_MENDED = 500
 
 Decided = tuple[Verdict, Mapping[str, str] | None, str, str, tuple[Case, ...]]
 
@@ -242,6 +244,8 @@ def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: Solv
     They are about parameters, inputs, states and temperatures.  The spec's own values decide
     between > 0 and < 0 for a claim ``!= 0``, and whether they satisfy the conditions is said.
     """
+    if len(questions) > MOST_MENDED:
+        return ""
     points, known = spec_points(iphs), frozenset[str]()
     known = known.union(*points)
     broken = [q.original for q in questions if _failure(q, solver)]

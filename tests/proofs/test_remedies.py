@@ -165,3 +165,14 @@ def test_no_condition_is_shown_that_domain_cannot_have(temperature, known):
     (row,) = (row for row in unproved(text) if row.id == "temperature")
     assert row.verdict is Verdict.REFUTED
     assert "in [domain]" not in row.reason
+
+
+def test_no_condition_is_looked_for_where_there_are_thousands_of_questions():
+    """Two tables with parameters for knots have 7000 pieces of their product: it took minutes."""
+    table = "table(q/{}, -2, -3, -b, -n, b, n, 2, 3)"
+    law = f'force = "k*x_0*{table.format("x_0")}*{table.format("x_1")}"'
+    more = 'x_1 = { value = 0.2, unit = "m" }\nn = { value = 1.5, unit = "1" }\n'
+    more += 'b = { value = 0.5, unit = "1" }\n[domain]'
+    text = SPEC.replace("[domain]", more).replace('stiffness = "k"', law)
+    (row,) = (row for row in unproved(text) if row.id == "welldef")
+    assert row.reason == "-2 < -b in a table is false: -2 and -2"
