@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "amplified_stack.h"
 
@@ -181,6 +181,46 @@ static void amplified_stack_stage(const real *restrict x_,
     rows[8] = F_bumper*v_load/T;
     rows[9] = lam*(T_e/T - 1.0);
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void amplified_stack_costates(const real *restrict x_,
+                                     const real *restrict g_,
+                                     const amplified_stack_reals *restrict p_,
+                                     real *restrict out)
+{
+    const real k = p_->k;
+    const real m_s = p_->m_s;
+    const real C = p_->C;
+    const real n = p_->n;
+    const real m = p_->m;
+    const real k_l = p_->k_l;
+    const real Q = x_[0];
+    const real q = x_[1];
+    const real p = x_[2];
+    const real x = x_[3];
+    const real F_end_stop = g_[0];
+    const real T = g_[1];
+    /* co-states dU/dx */
+    const real V_clamped = Q/C;
+    const real F_stack = k*q;
+    const real v_load = p/(m + m_s/power_2_of(n));
+    const real F_spring = k_l*x;
+    /* result */
+    out[0] = V_clamped;
+    out[1] = F_stack;
+    out[2] = v_load;
+    out[3] = F_spring;
+    out[4] = F_end_stop;
+    out[5] = T;
+}
+enum { amplified_stack_bodies = 1 };
+static const int amplified_stack_body[] = {
+    5,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void amplified_stack_slopes(const real *restrict x_,
@@ -1152,6 +1192,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -1199,6 +1240,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "bimorph.h"
 
@@ -156,6 +156,45 @@ static void bimorph_stage(const real *restrict x_,
     rows[9] = F_losses*v_tip/T;
     rows[10] = lam*(T_e/T - 1.0);
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void bimorph_costates(const real *restrict x_,
+                             const real *restrict g,
+                             const bimorph_reals *restrict p_,
+                             real *restrict out)
+{
+    const real l = p_->l;
+    const real w = p_->w;
+    const real h = p_->h;
+    const real s = p_->s;
+    const real d = p_->d;
+    const real eps = p_->eps;
+    const real m = p_->m;
+    const real x = x_[0];
+    const real p = x_[1];
+    const real Q_u = x_[3];
+    const real Q_l = x_[4];
+    const real T = g[0];
+    /* co-states dU/dx */
+    const real F_bending = 2.0*w*power_3_of(h)/(s*power_3_of(l))*x;
+    const real v_tip = p/m;
+    const real V_Q_u = h/(4.0*w*l)*(2.0*(Q_u + Q_l)/eps + 2.0*(Q_u - Q_l)/(eps - 13.0*power_2_of(d)/(16.0*s)));
+    const real V_Q_l = h/(4.0*w*l)*(2.0*(Q_u + Q_l)/eps - 2.0*(Q_u - Q_l)/(eps - 13.0*power_2_of(d)/(16.0*s)));
+    /* result */
+    out[0] = F_bending;
+    out[1] = v_tip;
+    out[2] = T;
+    out[3] = V_Q_u;
+    out[4] = V_Q_l;
+}
+enum { bimorph_bodies = 1 };
+static const int bimorph_body[] = {
+    2,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void bimorph_slopes(const real *restrict x_,
@@ -840,6 +879,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -887,6 +927,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "dc_motor.h"
 
@@ -134,6 +134,38 @@ static void dc_motor_stage(const real *restrict x,
     rows[7] = lam*(T_e/T - 1.0);
     m[0] = 1.0 + al*T_minus_T_0;
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void dc_motor_costates(const real *restrict x,
+                              const real *restrict g,
+                              const dc_motor_reals *restrict p,
+                              real *restrict out)
+{
+    const real L = p->L;
+    const real J_m = p->J_m;
+    const real n = p->n;
+    const real J_l = p->J_l;
+    const real T_0 = p->T_0;
+    const real phi = x[0];
+    const real H = x[1];
+    const real T_minus_T_0 = g[0];
+    /* co-states dU/dx */
+    const real i_armature = phi/L;
+    const real omega_rotor = H/(J_m + J_l/power_2_of(n));
+    const real T = T_0 + T_minus_T_0;
+    /* result */
+    out[0] = i_armature;
+    out[1] = omega_rotor;
+    out[2] = T;
+}
+enum { dc_motor_bodies = 1 };
+static const int dc_motor_body[] = {
+    2,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void dc_motor_slopes(const real *restrict x,
@@ -787,6 +819,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -834,6 +867,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "electromagnet.h"
 
@@ -137,6 +137,38 @@ static void electromagnet_stage(const real *restrict x_,
     rows[6] = lam*(T_e/T - 1.0);
     m_[0] = g + x;
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void electromagnet_costates(const real *restrict x_,
+                                   const real *restrict g_,
+                                   const electromagnet_reals *restrict p_,
+                                   real *restrict out)
+{
+    const real m = p_->m;
+    const real k = p_->k;
+    const real q = x_[0];
+    const real p = x_[1];
+    const real T = g_[0];
+    const real i_phi = g_[1];
+    const real F_x = g_[2];
+    /* co-states dU/dx */
+    const real F_spring = k*q;
+    const real v_armature = p/m;
+    /* result */
+    out[0] = F_spring;
+    out[1] = v_armature;
+    out[2] = T;
+    out[3] = i_phi;
+    out[4] = F_x;
+}
+enum { electromagnet_bodies = 1 };
+static const int electromagnet_body[] = {
+    2,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void electromagnet_slopes(const real *restrict x_,
@@ -794,6 +826,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -841,6 +874,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

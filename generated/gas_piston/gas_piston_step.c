@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "gas_piston.h"
 
@@ -124,6 +124,32 @@ static void gas_piston_stage(const real *restrict x,
     rows[4] = lam*(T_e/T - 1.0);
     m_[0] = V_0 + A*q;
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void gas_piston_costates(const real *restrict x,
+                                const real *restrict g,
+                                const gas_piston_reals *restrict p_,
+                                real *restrict out)
+{
+    const real m = p_->m;
+    const real p = x[0];
+    const real F_q = g[0];
+    const real T = g[1];
+    /* co-states dU/dx */
+    const real v_piston = p/m;
+    /* result */
+    out[0] = v_piston;
+    out[1] = F_q;
+    out[2] = T;
+}
+enum { gas_piston_bodies = 1 };
+static const int gas_piston_body[] = {
+    2,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void gas_piston_slopes(const real *restrict x,
@@ -763,6 +789,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -810,6 +837,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

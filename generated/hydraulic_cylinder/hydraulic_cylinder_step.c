@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "hydraulic_cylinder.h"
 
@@ -157,6 +157,36 @@ static void hydraulic_cylinder_stage(const real *restrict x,
     rows[6] = F_friction*v_load/T;
     rows[7] = lam*(T_e/T - 1.0);
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void hydraulic_cylinder_costates(const real *restrict x,
+                                        const real *restrict g,
+                                        const hydraulic_cylinder_reals *restrict p_,
+                                        real *restrict out)
+{
+    const real C_h = p_->C_h;
+    const real m = p_->m;
+    const real V = x[0];
+    const real p = x[1];
+    const real F_stop = g[0];
+    const real T = g[1];
+    /* co-states dU/dx */
+    const real dp_chamber = V/C_h;
+    const real v_load = p/m;
+    /* result */
+    out[0] = dp_chamber;
+    out[1] = v_load;
+    out[2] = F_stop;
+    out[3] = T;
+}
+enum { hydraulic_cylinder_bodies = 1 };
+static const int hydraulic_cylinder_body[] = {
+    3,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void hydraulic_cylinder_slopes(const real *restrict x,
@@ -1108,6 +1138,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -1155,6 +1186,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

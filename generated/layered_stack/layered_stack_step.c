@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "layered_stack.h"
 
@@ -257,6 +257,74 @@ static void layered_stack_stage(const real *restrict x,
     m[1] = T_body_2_minus_T_0;
     m[2] = T_body_3_minus_T_0;
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void layered_stack_costates(const real *restrict x,
+                                   const real *restrict g,
+                                   const layered_stack_reals *restrict p,
+                                   real *restrict out)
+{
+    const real M = p->M;
+    const real k = p->k;
+    const real C = p->C;
+    const real L = p->L;
+    const real T_0 = p->T_0;
+    const real q_1 = x[0];
+    const real p_1 = x[1];
+    const real Q_1 = x[2];
+    const real phi_1 = x[3];
+    const real q_2 = x[5];
+    const real p_2 = x[6];
+    const real Q_2 = x[7];
+    const real phi_2 = x[8];
+    const real q_3 = x[10];
+    const real p_3 = x[11];
+    const real Q_3 = x[12];
+    const real phi_3 = x[13];
+    const real T_body_1_minus_T_0 = g[0];
+    const real T_body_2_minus_T_0 = g[1];
+    const real T_body_3_minus_T_0 = g[2];
+    /* co-states dU/dx */
+    const real F_spring_1 = k*q_1;
+    const real v_mass_1 = p_1/M;
+    const real V_capacitor_1 = Q_1/C;
+    const real i_hysteron_1 = phi_1/L;
+    const real T_body_1 = T_0 + T_body_1_minus_T_0;
+    const real F_spring_2 = k*q_2;
+    const real v_mass_2 = p_2/M;
+    const real V_capacitor_2 = Q_2/C;
+    const real i_hysteron_2 = phi_2/L;
+    const real T_body_2 = T_0 + T_body_2_minus_T_0;
+    const real F_spring_3 = k*q_3;
+    const real v_mass_3 = p_3/M;
+    const real V_capacitor_3 = Q_3/C;
+    const real i_hysteron_3 = phi_3/L;
+    const real T_body_3 = T_0 + T_body_3_minus_T_0;
+    /* result */
+    out[0] = F_spring_1;
+    out[1] = v_mass_1;
+    out[2] = V_capacitor_1;
+    out[3] = i_hysteron_1;
+    out[4] = T_body_1;
+    out[5] = F_spring_2;
+    out[6] = v_mass_2;
+    out[7] = V_capacitor_2;
+    out[8] = i_hysteron_2;
+    out[9] = T_body_2;
+    out[10] = F_spring_3;
+    out[11] = v_mass_3;
+    out[12] = V_capacitor_3;
+    out[13] = i_hysteron_3;
+    out[14] = T_body_3;
+}
+enum { layered_stack_bodies = 3 };
+static const int layered_stack_body[] = {
+    4, 9, 14,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void layered_stack_slopes(const real *restrict x,
@@ -1091,6 +1159,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -1138,6 +1207,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

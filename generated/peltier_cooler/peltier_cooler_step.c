@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "peltier_cooler.h"
 
@@ -133,6 +133,32 @@ static void peltier_cooler_stage(const real *restrict x,
     rows[9] = P/T_plate;
     rows[10] = h*(T_e/T_sink - 1.0);
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void peltier_cooler_costates(const real *restrict x,
+                                    const real *restrict g,
+                                    const peltier_cooler_reals *restrict p,
+                                    real *restrict out)
+{
+    const real L = p->L;
+    const real phi = x[0];
+    const real T_plate = g[0];
+    const real T_sink = g[1];
+    /* co-states dU/dx */
+    const real i_leads = phi/L;
+    /* result */
+    out[0] = i_leads;
+    out[1] = T_plate;
+    out[2] = T_sink;
+}
+enum { peltier_cooler_bodies = 2 };
+static const int peltier_cooler_body[] = {
+    1, 2,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void peltier_cooler_slopes(const real *restrict x,
@@ -785,6 +811,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -832,6 +859,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

@@ -19,7 +19,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "piezo_stack.h"
 
@@ -160,6 +160,50 @@ static void piezo_stack_stage(const real *restrict x,
     rows[5 + hysteron_count + hysteron_count] = lam*(T_e/T - 1.0);
     m[0] = T_minus_T_0;
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void piezo_stack_costates(const real *restrict x,
+                                 const real *restrict g,
+                                 const piezo_stack_reals *restrict p_,
+                                 real *restrict out)
+{
+    const long hysteron_count = p_->hysteron_count;
+    const real M = p_->M;
+    const real k = p_->k;
+    const real q_l = p_->q_l;
+    const real C = p_->C;
+    const real *restrict L = p_->L;
+    const real T_0 = p_->T_0;
+    const real q = x[0];
+    const real p = x[1];
+    const real Q_C = x[2];
+    const real *restrict phi = x + 3;
+    const real T_minus_T_0 = g[0];
+    /* co-states dU/dx */
+    const real F_spring = k*(q - q_l);
+    const real v_mass = p/M;
+    const real V_capacitor = Q_C/C;
+    const real T = T_0 + T_minus_T_0;
+    /* each lane of hysteron: result */
+#pragma omp simd
+    for (long j = 0; j < hysteron_count; ++j) {
+        const real i_hysteron = phi[j]/L[j];
+        out[3 + j] = i_hysteron;
+    }
+    /* result */
+    out[0] = F_spring;
+    out[1] = v_mass;
+    out[2] = V_capacitor;
+    out[3 + hysteron_count] = T;
+}
+enum { piezo_stack_bodies = 1 };
+static const int piezo_stack_body[] = {
+    4,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void piezo_stack_slopes(const real *restrict x,
@@ -849,6 +893,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -896,6 +941,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

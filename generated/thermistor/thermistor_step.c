@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "thermistor.h"
 
@@ -110,6 +110,34 @@ static void thermistor_stage(const real *restrict x,
     rows[0] = V_bead*i_coil;
     rows[1] = V_bead*i_coil/T;
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void thermistor_costates(const real *restrict x,
+                                const real *restrict g,
+                                const thermistor_reals *restrict p,
+                                real *restrict out)
+{
+    const real L = p->L;
+    const real C = p->C;
+    const real phi = x[0];
+    const real Q = x[1];
+    const real T = g[0];
+    /* co-states dU/dx */
+    const real i_coil = phi/L;
+    const real V_cap = Q/C;
+    /* result */
+    out[0] = i_coil;
+    out[1] = V_cap;
+    out[2] = T;
+}
+enum { thermistor_bodies = 1 };
+static const int thermistor_body[] = {
+    2,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void thermistor_slopes(const real *restrict x,
@@ -740,6 +768,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -787,6 +816,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

@@ -18,7 +18,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */
 #include "voice_coil.h"
 
@@ -145,6 +145,42 @@ static void voice_coil_stage(const real *restrict x,
     rows[8] = h*(T_e/T_magnet - 1.0);
     m_[0] = 1.0 + al*T_winding_minus_T_0;
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void voice_coil_costates(const real *restrict x,
+                                const real *restrict g,
+                                const voice_coil_reals *restrict p_,
+                                real *restrict out)
+{
+    const real m = p_->m;
+    const real k = p_->k;
+    const real L = p_->L;
+    const real T_0 = p_->T_0;
+    const real q = x[0];
+    const real p = x[1];
+    const real phi = x[2];
+    const real T_winding_minus_T_0 = g[0];
+    const real T_magnet = g[1];
+    /* co-states dU/dx */
+    const real F_suspension = k*q;
+    const real v_cone = p/m;
+    const real i_coil = phi/L;
+    const real T_winding = T_0 + T_winding_minus_T_0;
+    /* result */
+    out[0] = F_suspension;
+    out[1] = v_cone;
+    out[2] = i_coil;
+    out[3] = T_winding;
+    out[4] = T_magnet;
+}
+enum { voice_coil_bodies = 2 };
+static const int voice_coil_body[] = {
+    3, 4,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void voice_coil_slopes(const real *restrict x,
@@ -818,6 +854,7 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -865,6 +902,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */

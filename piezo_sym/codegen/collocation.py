@@ -40,6 +40,7 @@ class Stage:
     booked: tuple[OutputRow, ...]
     switches: tuple[Switch, ...]  # of the laws, in order
     limits: tuple[Limit, ...]  # the conditions of the domain that depend on the state
+    costates: tuple[OutputRow, ...]  # Ebar of each state
     taken: frozenset[str]  # every name in use
     #: Functions whose sign changes where an integrand of `means` has a kink.
     bends: tuple[OutputRow, ...] = ()
@@ -68,8 +69,17 @@ class Collocation:
     #: if there is no body, or no store that could lose energy.
     heated: int
     jumps: bool  # whether a law is declared discontinuous
+    bodies: tuple[int, ...]  # the rows of all entropies
     #: The path functionals, whose values a stage is given after the means.
     paths: tuple[Path, ...] = ()
+
+    @property
+    def takes_residuals(self) -> bool:
+        """Whether the body `heated` can take as heat what Newton's method leaves of the equations.
+
+        Path functionals store what the end of their path says, not the integral of their rates.
+        """
+        return self.heated >= 0 and not self.paths
 
 
 def collocation_of(iphs: IPHS, known: Quantities | None = None) -> Collocation:
@@ -90,6 +100,7 @@ def collocation_of(iphs: IPHS, known: Quantities | None = None) -> Collocation:
         stage=_stage(own, rates, means),
         slopes=_slopes(smooth, rates if smooth is own else rates_of(smooth), means),
         heated=_heated(q),
+        bodies=tuple(n for n, (_, port) in enumerate(q.stores) if isinstance(port, Body)),
         jumps=any(getattr(element, "discontinuous", False) for element in elements),
         paths=paths,
     )
@@ -106,7 +117,8 @@ def _stage(q: Quantities, rates: tuple[OutputRow, ...], means: tuple[Quantity, .
     new = Names(q.taken)
     booked = (*supply_of(q), *heats_of(q), *productions_of(q), *exchanges_of(q))
     defined = tuple(item for item in q.defined if item not in means)
-    values = switched_values(defined, (*rates, *booked), q.lanes, new, means=means)
+    costates = map(OutputRow, q.iphs.system.states, q.costates)
+    values = switched_values(defined, (*rates, *booked, *costates), q.lanes, new, means=means)
     moving = {state.name for state in q.states}
     for item in q.defined:
         moving.update([item.name] if not moving.isdisjoint(names(item.value)) else [])
@@ -115,9 +127,10 @@ def _stage(q: Quantities, rates: tuple[OutputRow, ...], means: tuple[Quantity, .
     return Stage(
         quantities=tuple(map(sharp_quantity, values.quantities)),
         rates=values.rows[: len(rates)],
-        booked=values.rows[len(rates) :],
+        booked=values.rows[len(rates) : len(rates) + len(booked)],
         switches=values.switches,
         limits=tuple(replace(limit, margin=compared(limit.margin)) for limit in limits),
+        costates=values.rows[len(rates) + len(booked) :],
         taken=frozenset(new.taken),
         bends=values.bends,
     )

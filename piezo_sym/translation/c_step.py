@@ -75,9 +75,16 @@ static void {model}_give({model}_reals *to, const {model}_parameters *from, int 
 {given}}}
 """
 BENDS = "#define BENDS\n"
+#: Around what is for run/engine alone.
+ENGINE = """\
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+"""
+END_OF_ENGINE = "#endif /* of what run/engine takes */\n"
 _SIGNATURES = {
     "integrands": "x p out",
     "stage": "x g b u p out rows s m",
+    "costates": "x g p out",
     "slopes": "x g b u p out",
     "bends": "x p out",
     "path_parameters": "x p out",
@@ -99,6 +106,7 @@ def read_step(text: str, known: Proved) -> dict[Key, Value]:
     macros = MACROS.replace("{functions}", "".join(lines))
     bends = BENDS in text
     parts = [*_data(text, known.iphs.circuit), *_path_table(known), *([BENDS] if bends else [])]
+    parts += [ENGINE, END_OF_ENGINE] if "costates" in known.slots else []
     module = python_of(text, known.iphs.model.name, macros, parts)
     calls = {"chosen": "choice"} | {f"{name}_of": _LIBRARY[name] for name in lines.values()}
     file = File(known, "real", "reals", _SIGNATURES, calls, _RESULTS)
@@ -185,8 +193,9 @@ class _Step:
 
         An integrand is returned without what its mean adds to that of its co-state.
         """
-        paths = ["path_parameters", "drives"] if self.file.known.paths else []
-        wanted = {"integrands", "stage", "slopes", "sizes", *paths, *["bends"] * bends}
+        more = ["path_parameters", "drives"] if self.file.known.paths else []
+        more += ["costates"] if "costates" in self.file.known.slots else []
+        wanted = {"integrands", "stage", "slopes", "sizes", *more, *["bends"] * bends}
         if self.functions.keys() != wanted:
             raise NotShownError("the step has other functions than it should")
         found = self._integrands()
@@ -194,7 +203,7 @@ class _Step:
         found |= stage.rows({"out", "rows"})
         with reading(self.field, "margins"):
             found |= self._function("stage").rows({"m"})
-        for name in paths:
+        for name in more:
             found |= self._function(name, by_branches=name == "drives").rows()
         places = [*stage.switches], self._function("slopes").places
         check_parts(self.file)
@@ -210,13 +219,16 @@ class _Step:
         """Check what tables tell the engine: who takes losses, jumps, what integrands read."""
         iphs, known = self.iphs, self.file.known
         ports = [port for _, port in iphs.circuit.of(Storage, Body)]
-        body = next((n for n, port in enumerate(ports) if isinstance(port, Body)), -1)
+        bodies = [n for n, port in enumerate(ports) if isinstance(port, Body)]
         lossy = any(isinstance(port, Storage) for port in ports)
         jumps = any(getattr(e, "discontinuous", False) for e in iphs.model.elements.values())
         used = {g for value in known.means.values() for g in value.parts}
         states = [known.names[slot.label] for slot in iphs.system.states]
         read = [n for n, value in enumerate(states) if not used.isdisjoint(value.parts)]
-        wanted = {"heated": [body if lossy else -1], "jumps": [int(jumps)], "reads": [len(read)]}
+        wanted = {"heated": bodies[:1] if bodies and lossy else [-1], "jumps": [int(jumps)]}
+        wanted |= {"reads": [len(read)]}
+        if "costates" in known.slots:
+            wanted |= {"bodies": [len(bodies)], "body": bodies}
         found = {word: self.tables.get(word) for word in wanted}
         if found != wanted or self.tables.get("read", [])[: len(read)] != read:
             raise NotShownError("the step does not say which states it reads, heats, or jumps with")

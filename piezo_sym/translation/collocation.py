@@ -61,7 +61,11 @@ def proved_step(iphs: IPHS) -> Proved:
     slots |= {"rhs": iphs.system.states, "ledger": tuple(ledger)}
     slots["g"] = (*slots["integrands"], *given_paths)
     paths = tuple(_paths(read, stops, slots, values))
-    for function, rows in {"rhs": listed["rhs"], "ledger": ledger.values()}.items():
+    stage = {"rhs": listed["rhs"], "ledger": ledger.values()}
+    if not stops and all(any(iphs.circuit.of(kind)) for kind in (Storage, Body)):
+        slots["costates"] = iphs.system.states
+        stage["costates"] = [read(costate) for costate in iphs.system.E]
+    for function, rows in stage.items():
         values |= {(function, n): value for n, value in enumerate(rows)}
     functions = {slot.label: value for slot, value in means.values()}
     needs = tuple(read.field.needs)

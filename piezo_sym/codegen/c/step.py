@@ -27,8 +27,15 @@ from piezo_sym.expressions.tree import names
 NOTE = """\
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
  */"""
+
+#: Around what is printed for run/engine alone.
+ENGINE = """\
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+"""
+END_OF_ENGINE = "#endif /* of what run/engine takes */\n"
 
 #: The definitions of `real` as one number, if the including file has not defined it.
 REAL = """\
@@ -57,6 +64,7 @@ def c_step(program: Program, step: Collocation) -> str:
         printer.integrands(),
         *printer.bends(),
         printer.stage(),
+        *printer.costates(),
         printer.slopes(),
         printer.sizes(),
         *printer.paths(),
@@ -163,6 +171,19 @@ class _Printer:
             writes,
             local=[end for _, group in results for end in group],
         )
+
+    def costates(self) -> Iterator[str]:
+        """Yield the function of the co-states, and which are temperatures, if the engine asks."""
+        if not self.step.takes_residuals:
+            return
+        stage = self.step.stage
+        writes, local = self.frame.writes("out", stage.costates)
+        doc = "Co-states dU/dx of a stage, of all states; then the rows of entropies"
+        words = ["x", "g", "p", "out"]
+        text = self.frame.writing("costates", words, doc, stage.quantities, writes, local=local)
+        bodies = [f"enum {{ {self.name}_bodies = {len(self.step.bodies)} }};"]
+        bodies += table(f"{self.name}_body", self.step.bodies)
+        yield "\n".join([f"{ENGINE}\n{text}", *bodies, END_OF_ENGINE]).removesuffix("\n")
 
     def slopes(self) -> str:
         """Return the derivative of the rates by the state, in the places of `coupling`."""

@@ -33,6 +33,14 @@ void MODEL(stages_at_once)(const void *space, const double *x, const double *mea
                  (real *)rate, (real *)rows, (real *)side, (real *)margin);
 }
 
+#if defined(COSTATES)
+void MODEL(costates_at_once)(const void *space, const double *x, const double *mean, double *costate)
+{
+    const MODEL(shared_reals) *const from = space;
+    MODEL(costates)((const real *)x, (const real *)mean, &from->p, (real *)costate);
+}
+#endif
+
 void MODEL(nodes_at_once)(const void *space, const double *x, double *value)
 {
     const MODEL(shared_reals) *const from = space;

@@ -10,6 +10,7 @@ void MODEL(share)(void *space, const MODEL(parameters) *p);
 void MODEL(stages_at_once)(const void *space, const double *x, const double *mean,
                            const double *branch, const double *u, double *rate, double *rows,
                            double *side, double *margin);
+void MODEL(costates_at_once)(const void *space, const double *x, const double *mean, double *costate);
 void MODEL(nodes_at_once)(const void *space, const double *x, double *value);
 #if defined(__GNUC__) && !defined(_WIN32)
 #pragma GCC visibility pop

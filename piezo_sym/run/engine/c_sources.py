@@ -15,7 +15,7 @@ from piezo_sym.expressions.tree import Sym
 
 #: Collocation steps of runs in lanes, behind a model's own text and the tables of their stages.
 _COLLOCATION = (
-    *("newton.c", "nodes.c", "trajectory.c", "error.c", "crossings.c", "replay.c"),
+    *("newton.c", "residual.c", "nodes.c", "trajectory.c", "error.c", "crossings.c", "replay.c"),
     *("samples.c", "outcome.c", "dispatch.c", "batch.c", "step_once.c"),
 )
 #: Nodes for means over a step, beyond its stages.
@@ -46,6 +46,7 @@ _LEFT_OUT = (
     r"#if PAIRS\n.*?#endif /\* PAIRS \*/\n",
     r"#if defined\(LANES\).*?#endif /\* LANES \*/\n",
     r"#if LOSSY.*?#endif\n",
+    r"#if defined\(COSTATES\).*?#endif /\* COSTATES \*/\n",
 )
 #: What few models need: kinks in energies, and path functionals; a step says so.
 _PARTS = {"BENDS": ("bends.c",), "PATHS": ("way.c", "stop.c", "paths.c")}
@@ -154,6 +155,7 @@ def standalone_step(model: str, step: str) -> str:
     needed = [word for word in _PARTS if f"#define {word}" in step]
     parts = [file for word in needed for file in _PARTS[word]]
     solver = c_source("gauss.c", *parts, "gaps.c", "newton.c", "nodes.c")
+    solver = solver.replace("MODEL(iterate_enough)", "MODEL(iterate)")
     others = (rf"#if defined\({w}\).*?#endif /\* {w} \*/\n" for w in _PARTS if w not in needed)
     for left_out in (*_LEFT_OUT, *others):
         solver = re.sub(left_out, "", solver, flags=re.DOTALL)

@@ -8,6 +8,7 @@ typedef struct {
     real h, behind, slope;
     mask busy, sampling, steps, known; /* lanes with a step; for samples; others; with a prediction */
     mask planned;                      /* steps whose length their errors decide */
+    mask loose;                        /* where Newton's method may stop short of round-off */
     mask resumed;                      /* whose step begins at the last sample */
     mask found, good;                  /* whose step has rates; and lies in the domain */
     mask search, switched;             /* where a switch has to be located; and a step may be cut */
@@ -32,6 +33,7 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
         SET(t.planned, lane, l->phase == STEP && b->fixed == 0.0);
         SET(b->m.sketch, lane, IN(t.planned, lane) && !l->settled);
         SET(t.known, lane, l->known > 0.0);
+        SET(t.loose, lane, b->fixed == 0.0 && !b->tape && !l->exact);
         l->solves += !IN(t.sampling, lane);
         LANE(&t.h, 0, lane) = l->length;
         const double ahead = MODEL(begin)(l) - l->t; /* of the run */
@@ -39,6 +41,9 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
         l->predicted = l->known > 0.0;
         LANE(&t.slope, 0, lane) = l->known > 0.0 ? l->length / l->known : 0.0;
     }
+#if defined(COSTATES)
+    b->m.loose = t.loose;
+#endif /* COSTATES */
     t.steps = t.busy & none_of(t.sampling);
     b->m.sketch &= t.steps & none_of(b->m.over);
     return t;
@@ -56,6 +61,13 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
     t->good = t->found & MODEL(accepted)(m);
     MODEL(reach_of)(m, t->h, stage_weight, m->reached);
     MODEL(increments)(b, t->h, b->some_rows);
+#if defined(COSTATES)
+    MODEL(add_residual)(m, m->reached, b->some_rows);
+    for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+        MODEL(lane) *l = b->lane + lane;
+        l->exact = IN(t->loose & none_of(m->loose), lane) ? EXACT : l->exact - (l->exact > 0);
+    }
+#endif /* COSTATES */
     if (any(t->resumed))
         MODEL(begin_at_runs)(b, t->resumed, over);
 }

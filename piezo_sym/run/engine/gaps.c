@@ -94,6 +94,20 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+#if defined(COSTATES)
+/* The power of the residuals at each stage; m->gap holds them. */
+static void MODEL(residual_power)(const MODEL(block) *m, real h, real *power)
+{
+    for (long i = 0; i < STAGES; ++i) {
+        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
+        MODEL(costates)(m->reached, m->mean + i * m->given, &m->p, m->costate);
+        power[i] = zero;
+        for (long k = 0; k < m->n; ++k)
+            power[i] += m->costate[k] * m->gap[i * m->n + k];
+    }
+}
+#endif /* COSTATES */
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {

@@ -124,6 +124,24 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
+#if defined(COSTATES)
+/* The power of the residuals at each stage, right after gaps(); m->gap holds them. */
+static void MODEL(residual_power)(const MODEL(block) *m, real h, real *power)
+{
+    lanes sum = {0.0};
+    (void)h;
+    MODEL(costates_at_once)(m->shared, m->reached_lanes, m->mean_lanes, m->gap_lanes);
+    for (long k = 0; k < m->n; ++k) {
+        lanes gap = {0.0};
+        for (long i = 0; i < STAGES; ++i)
+            gap[i] = m->gap[i * m->n + k];
+        sum += lanes_of(m->gap_lanes + k * LANES) * gap;
+    }
+    for (long i = 0; i < STAGES; ++i)
+        power[i] = sum[i];
+}
+#endif /* COSTATES */
+
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double column[][LANES])
 {

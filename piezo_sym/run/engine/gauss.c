@@ -78,6 +78,12 @@ typedef struct {
     long bends;
     real *bend, *look, *cut, *piece_slope; /* see bends.c */
 #endif /* BENDS */
+#if defined(COSTATES) /* see residual.c */
+    real *costate, *end_mean;  /* co-states; means at the end of the step */
+    real taken, scale;         /* entropy that the first body takes; factor on what processes produce */
+    mask loose, early;         /* lanes that may stop short of round-off; lanes that did */
+    double little;             /* in units of noise: what may be left of a change */
+#endif /* COSTATES */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes that step over kinks: each stage chooses its branches */
     mask sketch, sketched;     /* lanes that may stop early, beyond a switch; lanes that did */
@@ -201,6 +207,10 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(drive, (STAGES + 1) * m->drives);
     PLACE(yield, YIELD);
 #endif /* PATHS */
+#if defined(COSTATES)
+    PLACE(costate, n);
+    PLACE(end_mean, m->means);
+#endif /* COSTATES */
     m->fresh = m->slope; /* of one run there is no lane that keeps its slopes */
     if (REAL_WIDTH > 1)
         PLACE(fresh, m->slopes);

@@ -30,6 +30,8 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
+#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */
@@ -243,6 +245,9 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 #if defined(PATHS)
     MODEL(path_parameters)(m->x, &m->p, m->path);
 #endif /* PATHS */
+#if defined(COSTATES)
+    m->early &= none_of(where);
+#endif /* COSTATES */
     MODEL(gaps)(m, h, going);
     MODEL(prepare)(m, h, going);
     for (int iteration = 0; iteration < m->most && any(going); ++iteration) {
@@ -260,6 +265,11 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const mask near = smaller & (worst < NEAR);
         const real left = worst / (before + NO_SIZE);
         mask good = (worst <= 4.0) | (near & (worst * largest_of(left, left_before) <= 4.0));
+#if defined(COSTATES)
+        const mask exact = good;
+        if (iteration)
+            good |= m->loose & smaller & (worst * largest_of(left, wide(SHRINKS)) <= m->little);
+#endif /* COSTATES */
         if (iteration > 1) { /* stagnation: round-off, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
@@ -274,6 +284,9 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
             m->sketched |= enough & MODEL(strayed)(m);
             good |= m->sketched;
         }
+#if defined(COSTATES)
+        m->early |= going & good & none_of(exact | m->sketched);
+#endif /* COSTATES */
         found |= going & good;
         going &= none_of(good | lost);
         const mask slow = (worst > SLOW * before) & (before > 0.0);

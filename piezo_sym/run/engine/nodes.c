@@ -112,13 +112,13 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {
     m->fine &= none_of(where);
     m->sketched = nowhere;
-    mask found = MODEL(iterate)(m, h, where);
+    mask found = MODEL(iterate_enough)(m, h, where);
     if (LOSSY) /* a dissipative step has no means */
         return found;
     const mask more = MODEL(coarse)(m, h) & found & none_of(m->sketched | m->fine);
     if (any(more)) {
         m->fine |= more;
-        found &= none_of(more) | MODEL(iterate)(m, h, more);
+        found &= none_of(more) | MODEL(iterate_enough)(m, h, more);
     }
     const mask fine = m->fine & found & none_of(m->sketched);
     if (any(fine))
