@@ -40,10 +40,10 @@ class Stage:
     booked: tuple[OutputRow, ...]
     switches: tuple[Switch, ...]  # of the laws, in order
     limits: tuple[Limit, ...]  # the conditions of the domain that depend on the state
-    costates: tuple[OutputRow, ...]  # Ebar of each state
     taken: frozenset[str]  # every name in use
     #: Functions whose sign changes where an integrand of `means` has a kink.
     bends: tuple[OutputRow, ...] = ()
+    costates: tuple[OutputRow, ...] = ()  # the mean of dU/dx, of each state
 
 
 @final
@@ -69,9 +69,9 @@ class Collocation:
     #: if there is no body, or no store that could lose energy.
     heated: int
     jumps: bool  # whether a law is declared discontinuous
-    bodies: tuple[int, ...]  # the rows of all entropies
     #: The path functionals, whose values a stage is given after the means.
     paths: tuple[Path, ...] = ()
+    bodies: tuple[int, ...] = ()  # the rows of all entropies
 
     @property
     def takes_residuals(self) -> bool:
@@ -79,7 +79,7 @@ class Collocation:
 
         Path functionals store what the end of their path says, not the integral of their rates.
         """
-        return self.heated >= 0 and not self.paths
+        return self.heated >= 0 and bool(self.stage.costates) and not self.paths
 
 
 def collocation_of(iphs: IPHS, known: Quantities | None = None) -> Collocation:

@@ -142,9 +142,10 @@ def set_scales(
     first = systems[0]
     batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
     batch.largest[:] = first.scale(batch.largest)
-    for n in np.flatnonzero(np.any(batch.largest < QUIET, axis=1)).tolist():
+    quiet = (batch.largest < QUIET).any(axis=1)
+    for n in np.flatnonzero(quiet).tolist() if quiet.any() else ():
         batch.noise[n] = systems[n].noise(x[n])
-    if np.any(batch.noise):
+    if batch.noise.any():
         least = first.scale(OVER_NOISE * batch.noise / tolerance)
         batch.largest[:] = np.maximum(batch.largest, least)
 

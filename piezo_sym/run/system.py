@@ -5,6 +5,7 @@ Input: a generated module, `Parameters`, `Inputs`.  Output: `DrivenModule`.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, final
 
 import numpy as np
@@ -37,10 +38,15 @@ class DrivenModule:
     def scale(self, x: FloatArray) -> FloatArray:
         """Return magnitudes of x (*batch, n), at least `FLOOR`; of lanes, that of the largest."""
         scale = np.maximum(np.abs(x), FLOOR)
-        for record, row in zip(self.module.STATES, self.rows(self.module.STATES), strict=True):
-            if record.bank:
-                scale[..., row] = np.max(scale[..., row], axis=-1, keepdims=True)
+        for row in self._lanes:
+            scale[..., row] = np.max(scale[..., row], axis=-1, keepdims=True)
         return scale
+
+    @cached_property
+    def _lanes(self) -> tuple[slice, ...]:
+        """The rows of states that have lanes."""
+        records = self.module.STATES
+        return tuple(row for r, row in zip(records, self.rows(records), strict=True) if r.bank)
 
     def noise(self, x: FloatArray) -> FloatArray:
         """Return how far round-off of temperatures moves each state (n,) near the state x (n,).

@@ -116,6 +116,8 @@ class Batch:
         fields |= {n: getattr(self, n) for n in ("x", "largest", "noise", "states", "sums")}
         self._fixed: dict[str, Any] = {name: addresses(array) for name, array in fields.items()}
         self._fixed |= {"p": self._structures.addresses, "t": inputs.start}
+        sizes = {"count": len(x), "samples": times.size, "extra": extra}
+        self._task = c_record("task")(runs=self.run, times=at(self._times), **sizes)
         self.begin(x, stepping)
 
     def begin(self, x: FloatArray, stepping: Stepping) -> None:
@@ -136,24 +138,13 @@ class Batch:
         self._load(stepping)
         t = self.records["t"].min(where=self.records["failed"] == 0, initial=stop)
         self.records["segments"] = self.inputs.address(t)
-        over = bool(stepping.fixed > 0)
-        task = c_record("task")(
-            runs=self.run,
-            times=at(self._times),
-            count=len(self.records),
-            samples=self._times.size,
-            over_kinks=over,
-            either=stepping.kinks == "either" and not over,
-            extra=self.extra,
-            stop=stop,
-            tolerance=stepping.tolerance,
-            first=stepping.first,
-            longest=stepping.longest,
-            fixed=stepping.fixed,
-        )
+        over, task = stepping.fixed > 0, self._task
+        task.over_kinks, task.either = over, stepping.kinks == "either" and not over
+        task.stop, task.tolerance = stop, stepping.tolerance
+        task.first, task.longest, task.fixed = stepping.first, stepping.longest, stepping.fixed
         size = self.function("batch_size")
         size.restype = LONG
-        self._space = np.zeros(int(size(ctypes.byref(task))) + ALIGNED, dtype=np.uint8)
+        self._space = np.zeros(size(ctypes.byref(task)) + ALIGNED, dtype=np.uint8)
         place = self._space.ctypes.data
         self.address = ctypes.c_void_p(place + -place % ALIGNED)
         self.call("open", ctypes.byref(task))

@@ -15,8 +15,8 @@
 /* The largest part of the entropy produced in a step that residuals may add to it. */
 #define LITTLE 1e-3
 
-/* Take the residuals of lanes that stopped early as heat; returns the lanes where that is little. */
-static mask MODEL(take_residual)(MODEL(block) *m, real h)
+/* Take the residuals of some lanes as heat; returns the lanes where that is little. */
+static mask MODEL(take_residual)(MODEL(block) *m, real h, mask where)
 {
     const long n = m->n, body = m->first[MODEL(heated)], ports = MODEL(output_count);
     real power[STAGES], left = zero, gained = zero, produced = zero;
@@ -43,10 +43,10 @@ static mask MODEL(take_residual)(MODEL(block) *m, real h)
     const real taken = h * left / m->costate[body], more = taken - h * gained, made = h * produced;
     const real most = m->little * NOISE * (m->largest[body] + size_of(m->x[body]));
     const mask few = size_of(more) <= LITTLE * made, small = size_of(taken) <= most;
-    const mask fits = m->early & few & small, some = made > 0.0;
-    m->taken = chosen(fits, taken, zero);
-    m->scale = chosen(fits & some, 1.0 + more / made, wide(1.0));
-    return fits;
+    const mask fits = where & few & small, some = made > 0.0, beyond = made < 0.0;
+    m->taken = chosen(fits, taken, m->taken);
+    m->scale = chosen(fits & some, 1.0 + more / made, m->scale);
+    return fits | beyond; /* a switch lies within a step that consumes entropy: it will be cut */
 }
 
 /* Take what was left of the equations into the end of a step, and into what it books. */
@@ -64,9 +64,11 @@ static mask MODEL(iterate_enough)(MODEL(block) *m, real h, mask where)
 {
     mask found = MODEL(iterate)(m, h, where);
 #if defined(COSTATES)
-    m->taken = zero, m->scale = wide(1.0);
-    if (any(m->early & found)) {
-        const mask again = m->early & found & none_of(MODEL(take_residual)(m, h));
+    const mask early = m->early & found;
+    m->taken = chosen(where, zero, m->taken);
+    m->scale = chosen(where, wide(1.0), m->scale);
+    if (any(early)) {
+        const mask again = early & none_of(MODEL(take_residual)(m, h, early));
         if (any(again)) {
             m->loose &= none_of(again);
             m->early &= none_of(again);
