@@ -13,7 +13,7 @@
  */
 #if defined(COSTATES)
 /* The largest part of the entropy produced in a step that residuals may add to it. */
-#define LITTLE 1e-3
+#define LITTLE 1e-4
 
 /* Take the residuals of some lanes as heat; returns the lanes where that is little. */
 static mask MODEL(take_residual)(MODEL(block) *m, real h, mask where)
