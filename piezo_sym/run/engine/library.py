@@ -31,7 +31,7 @@ from piezo_sym.run.engine.c_sources import (
     steps_source,
 )
 from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, passed_by, processor
-from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.module import UNPROVED, GeneratedModule
 
 Layout = Literal["one", "many", "lanes", "slopes"]
 #: The files to compile, which include the others.
@@ -43,6 +43,9 @@ DIGEST, BUILD, LEFT_SECONDS = ".sha256", ".build-", 3600.0
 #: The parts of C that depend on a spec's values: comments, and the initializer.
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _VALUES = re.compile(r"^#define \w+_DEFAULTS \{ \\\n(?:.*\\\n)*\}$", re.MULTILINE)
+#: The verdict in a header whose model is not proved, and what C is told of it: see real.h.
+_UNPROVED = re.compile(rf"^ \* Proofs: +{UNPROVED}", re.MULTILINE)
+NOT_PROVED = "#define NOT_PROVED\n"
 #: The environment variable for the folder of caches.
 CACHE = "HOME" if sys.platform == "darwin" else "XDG_CACHE_HOME"
 
@@ -77,10 +80,11 @@ class Sources:
         if self.stages:
             texts[f"{self.name}_step.c"] = self.step
             texts["elimination.c"] = c_source("elimination.c")
-            lossy = self.lossy
-            texts["driver.c"] = steps_source(self.name, self.stages, self.layout, lossy=lossy)
+            lossy, laws = self.lossy, NOT_PROVED if _UNPROVED.search(self.header) else ""
+            driver = steps_source(self.name, self.stages, self.layout, lossy=lossy)
+            texts["driver.c"] = laws + driver
             if lanes := stage_lanes(self.stages, self.layout, lossy=lossy):
-                texts["stages.c"] = stages_source(self.name, lanes)
+                texts["stages.c"] = laws + stages_source(self.name, lanes)
         else:
             texts["driver.c"] = functions_source(self.name)
         return {name: _COMMENT.sub(" ", text) for name, text in texts.items()}

@@ -1,0 +1,68 @@
+"""What Newton's method leaves of the equations of a step becomes heat: balances stay exact."""
+
+import numpy as np
+import pytest
+
+from piezo_sym import simulate, sine
+from piezo_sym.spec.load import parse
+
+OSCILLATOR = """
+[model]
+name = "ringing"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+k = { value = 100.0, unit = "N/m" }
+d = { value = 0.1, unit = "N*s/m" }
+k_3 = { value = 1e4, unit = "N/m**3" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 0.1, unit = "J/K" }
+lam = { value = 0.05, unit = "W/K" }
+[domain]
+assume = ["d >= 0", "k > 0", "k_3 >= 0", "m > 0", "lam >= 0"]
+[initial]
+q = 0.2
+[elements]
+spring = { kind = "spring", between = ["tip", "wall"], force = "k*q + k_3*q**3", state = "q" }
+mass = { kind = "mass", at = "tip", mass = "m", state = "p" }
+damper = { kind = "damper", between = ["tip", "wall"], force = "d*v", heats = "inner" }
+inner = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+outer = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+wall_leg = { kind = "conduction", between = ["inner", "outer"], conductance = "lam*T_1/T_0" }
+"""
+
+
+def ringing(damping, rtol):
+    return simulate(parse(OSCILLATOR), parameters={"d": damping}, duration=3.0, rtol=rtol)
+
+
+def turnover(found, names):
+    return sum(np.abs(np.diff(found[name].values)).sum() for name in names)
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 1e-4, 1e-6, 1e-8, 1e-12])
+@pytest.mark.parametrize("damping", [1.0, 1e-4, 1e-8, 0.0])
+def test_both_balances_are_exact_however_little_is_produced(damping, rtol):
+    """From states alone: the energies by hand, and the entropies of both bodies."""
+    found = ringing(damping, rtol)
+    q, p, S_1, S_2 = (found[name].values for name in ("q", "p", "S_inner", "S_outer"))
+    T_1, T_2 = 300 * np.exp(S_1 / 0.1), 300 * np.exp(S_2 / 0.1)
+    U = 50 * q**2 + 2500 * q**4 + p**2 / 2 + 0.1 * (T_1 + T_2)
+    motion = np.abs(np.diff(p**2 / 2)).sum()
+    assert np.abs(U - U[0]).max() <= 1e-12 * motion + 4 * np.spacing(U.max())
+    made = found.produced_damper.values + found.produced_wall_leg.values
+    assert np.abs(S_1 + S_2 - made).max() <= 1e-12 * made[-1] + 4 * np.spacing(np.abs(S_1).max())
+    for name in ("produced_damper", "produced_wall_leg", "heat_damper"):
+        assert np.all(np.diff(found[name].values) >= 0)
+
+
+def test_heats_are_those_of_the_laws():
+    """The heat of the damper is the integral of d*v*v, to the accuracy of the run."""
+    for damping in (1.0, 1e-4):
+        loose, tight = ringing(damping, 1e-4), ringing(damping, 1e-12)
+        for name in ("heat_damper", "produced_damper"):
+            assert loose[name].values[-1] == pytest.approx(tight[name].values[-1], rel=1e-3)
+
+
+def test_steps_with_a_tolerance_take_few_iterations():
+    found = simulate("piezo_stack", inputs={"V_in": sine(100, 100)}, duration=0.05, times=[0.05])
+    assert found.attrs["newton_iterations"] <= 3.5 * found.attrs["accepted_steps"]
