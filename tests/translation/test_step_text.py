@@ -180,7 +180,7 @@ def test_a_mean_may_be_of_a_costate_and_a_constant(made):
     """The mean of T - 2 T_0 tells T as well as that of T - T_0, if the stage adds 2 T_0."""
     text, known = made
     text = text.replace("T_0*expm1_of(S/c_0);\n}", "T_0*exp_of(S/c_0) - 2.0*T_0;\n}")
-    text = text.replace("T_minus_T_0 = g[0]", "T_minus_T_0 = T_0 + g[0]", 1)
+    text = text.replace("T_minus_T_0 = g[0]", "T_minus_T_0 = T_0 + g[0]")
     assert different("step", text, known) == ()
     text = text.replace("T_minus_T_0 = T_0 + g[0]", "T_minus_T_0 = g[0]", 1)
     assert different("step", text, known)[0].verdict is Verdict.REFUTED

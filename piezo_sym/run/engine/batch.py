@@ -138,7 +138,7 @@ class Batch:
         self._load(stepping)
         t = self.records["t"].min(where=self.records["failed"] == 0, initial=stop)
         self.records["segments"] = self.inputs.address(t)
-        over, task = stepping.fixed > 0, self._task
+        over, task = bool(stepping.fixed > 0), self._task
         task.over_kinks, task.either = over, stepping.kinks == "either" and not over
         task.stop, task.tolerance = stop, stepping.tolerance
         task.first, task.longest, task.fixed = stepping.first, stepping.longest, stepping.fixed
