@@ -20,19 +20,15 @@ limit of the inner state, `drives` the rates of coordinates.
 """
 
 import ast
-import re
 from collections import ChainMap
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import final
 
-from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements.ports import Body, Storage
-from piezo_sym.spec.tables import banks
 from piezo_sym.translation.c_forms import add_helper, add_part, check_parts, helper_is, is_part
 from piezo_sym.translation.c_function import NOT_COMPARED, CFunction
 from piezo_sym.translation.c_scope import Branch, File, Scope, kind_of
+from piezo_sym.translation.c_step_parts import BENDS, fixed_parts, macros_of
 from piezo_sym.translation.c_text import python_of
 from piezo_sym.translation.change import put, spelled
 from piezo_sym.translation.expressions import refused
@@ -40,47 +36,6 @@ from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Key, Proved
 from piezo_sym.translation.signs import reading
 
-_LIBRARY = {record.in_c: name for name, record in RECORDS.items() if record.smooth}
-#: What the words of a step stand for, for numbers of one run; called functions have a line.
-MACROS = """\
-#if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
-#define REAL_WIDTH 1
-#define ALONE
-#if !defined(REAL)
-#define REAL double /* or float */
-#endif
-typedef REAL real;
-#define zero 0.0
-#define wide(value) (value)
-#define chosen(condition, then, other) ((condition) ? (then) : (other))
-{functions}#define is_above(a, b) ((a) > (b))
-#define is_at_least(a, b) ((a) >= (b))
-#define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
-#define OF(value, lane) (value)
-#endif
-"""
-DATA = """\
-typedef struct {{
-{fields}}} {model}_reals;
---
-static long {model}_place_reals({model}_reals *to, const {model}_parameters *from, real *at)
-{{
-{unused}    real *const begin = at;
-{places}    return at - begin;
-}}
---
-static void {model}_give({model}_reals *to, const {model}_parameters *from, int lane)
-{{
-    (void)lane;
-{given}}}
-"""
-BENDS = "#define BENDS\n"
-#: Around what is for run/engine alone.
-ENGINE = """\
-#if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-"""
-END_OF_ENGINE = "#endif /* of what run/engine takes */\n"
 _SIGNATURES = {
     "integrands": "x p out",
     "stage": "x g b u p out rows s m",
@@ -101,51 +56,11 @@ def read_step(text: str, known: Proved) -> dict[Key, Value]:
     ----------
     known : from `proved_step`.
     """
-    lines = {f"#define {name}_of {name}\n": name for name in _LIBRARY}
-    lines = {line: name for line, name in lines.items() if line in text}
-    macros = MACROS.replace("{functions}", "".join(lines))
-    bends = BENDS in text
-    parts = [*_data(text, known.iphs.circuit), *_path_table(known), *([BENDS] if bends else [])]
-    parts += [ENGINE, END_OF_ENGINE] if "costates" in known.slots else []
-    module = python_of(text, known.iphs.model.name, macros, parts)
-    calls = {"chosen": "choice"} | {f"{name}_of": _LIBRARY[name] for name in lines.values()}
+    macros, calls = macros_of(text)
+    module = python_of(text, known.iphs.model.name, macros, [*fixed_parts(text, known)])
+    calls = {"chosen": "choice", **calls}
     file = File(known, "real", "reals", _SIGNATURES, calls, _RESULTS)
-    return _Step(module, file).rows(bends=bends)
-
-
-def _data(text: str, circuit: Circuit) -> list[str]:
-    """Return the record of parameters and what fills it, with the names that the text has."""
-    model, own = circuit.model, circuit.lane_parameters
-    counts = {f"{bank}_count": "" for bank in banks(model)}
-    fields, places, given = "", "", ""
-    for count in counts:
-        places += f"    to->{count} = from->{count};\n"
-    for spec in model.parameters:
-        name = next(iter(re.findall(rf"^    real \*?({spec}_*);$", text, re.M)), spec)
-        size, place = f"{own.get(spec)}_count", "[j]" if spec in own else ""
-        fields += f"    real {'*' if spec in own else ''}{name};\n"
-        if spec in own:
-            places += f"    to->{name} = at;\n    at += from->{size};\n"
-            given += f"    for (long j = 0; j < from->{size}; ++j)\n    "
-        given += f"    OF(to->{name}{place}, lane) = from->{name}{place};\n"
-    fields += "".join(f"    long {count};\n" for count in counts)
-    unused = "    (void)to;\n    (void)from;\n"
-    words = {"fields": fields or "    char none;\n", "places": places, "given": given or unused}
-    words["unused"] = "" if counts else unused
-    return DATA.format(model=model.name, **words).split("--\n")
-
-
-def _path_table(known: Proved) -> Iterator[str]:
-    """Yield the lines by which a step tells of its stops, if the system has some."""
-    banks, name = [*known.sizes], known.iphs.model.name
-    states = [slot.label for slot in known.iphs.system.states]
-    lines = [
-        f"    {{{banks.index(bank) if bank else -1}, {int(own)}, {states.index(inner)}}},\n"
-        for inner, bank, own in known.paths
-    ]
-    if lines:
-        head = f"#define PATHS {len(lines)}\nstatic const int {name}_path[PATHS][3] = {{\n"
-        yield f"{head}{''.join(lines)}}};\n"
+    return _Step(module, file).rows(bends=BENDS in text)
 
 
 @final

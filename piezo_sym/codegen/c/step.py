@@ -6,7 +6,7 @@ the functions that copy those of a run into a lane of vectors; `run/engine` driv
 are given, so the text compares nothing, and holds for vectors, too.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import final
 
@@ -16,6 +16,7 @@ from piezo_sym.codegen.c.head import comment, opening
 from piezo_sym.codegen.c.lines import Words, indented, used_only
 from piezo_sym.codegen.c.names import c_names, fresh_names
 from piezo_sym.codegen.c.order import Write, least_over_lanes
+from piezo_sym.codegen.c.step_parameters import give_text, place_text, record_text
 from piezo_sym.codegen.c.style import calls, powers
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
@@ -262,49 +263,3 @@ class _Printer:
             if rows:
                 terms.append(f"{rows}*{name}_count" if rows > 1 else f"{name}_count")
         return " + ".join([*terms, *([self.words["j"]] if bank else [])]) or "0"
-
-
-def record_text(program: Program, names: Mapping[str, str]) -> str:
-    """Return the record of parameters, as the functions of a step take them."""
-    lines = ["/* The parameters as `real`: of one run, or in vectors of one run per lane. */"]
-    lines += ["typedef struct {"]
-    for field in program.parameters:
-        lines.append(f"    {'real *' if field.bank else 'real '}{names[field.name]};")
-    lines += [f"    long {bank}_count;" for bank in program.counts]
-    if not program.parameters and not program.counts:
-        lines.append("    char none;")
-    return "\n".join([*lines, f"}} {program.name}_reals;"])
-
-
-def place_text(program: Program, names: Mapping[str, str]) -> str:
-    """Return the function that places the arrays for parameters of banks."""
-    body = [] if program.counts else ["(void)to;", "(void)from;"]
-    body += ["real *const begin = at;"]
-    body += [f"to->{bank}_count = from->{bank}_count;" for bank in program.counts]
-    for field in program.parameters:
-        if field.bank:
-            body.append(f"to->{names[field.name]} = at;")
-            body.append(f"at += from->{field.bank}_count;")
-    doc = (
-        "Copy the sizes of banks; place arrays for their parameters from `at` on, return their size"
-    )
-    head = f"static long {program.name}_place_reals({program.name}_reals *to, "
-    head += f"const {program.name}_parameters *from, real *at)"
-    return "\n".join([*comment(doc), head, "{", *indented([*body, "return at - begin;"]), "}"])
-
-
-def give_text(program: Program, names: Mapping[str, str]) -> str:
-    """Return the function that copies the parameters of a run into a lane of the vectors."""
-    body = ["(void)lane;"]
-    for field in program.parameters:
-        name = names[field.name]
-        if field.bank:
-            body.append(f"for (long j = 0; j < from->{field.bank}_count; ++j)")
-            body.append(f"    OF(to->{name}[j], lane) = from->{name}[j];")
-        else:
-            body.append(f"OF(to->{name}, lane) = from->{name};")
-    body += [] if program.parameters else ["(void)to;", "(void)from;"]
-    head = f"static void {program.name}_give({program.name}_reals *to, "
-    head += f"const {program.name}_parameters *from, int lane)"
-    doc = "Copy the parameters of a run into one lane of the vectors"
-    return "\n".join([*comment(doc), head, "{", *indented(body), "}"])

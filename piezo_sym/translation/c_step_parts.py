@@ -1,0 +1,109 @@
+"""Parts of a step's text that are as they have to be, word for word: macros, records, marks.
+
+Input: the text of ``<model>_step.c``, and the proved stage.  Output: the macros that it begins
+with, the functions that they name, and the parts that readers leave out.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+
+from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.spec.circuit import Circuit
+from piezo_sym.spec.tables import banks
+from piezo_sym.translation.known import Proved
+
+_LIBRARY = {record.in_c: name for name, record in RECORDS.items() if record.smooth}
+#: What the words of a step stand for, for numbers of one run; called functions have a line.
+MACROS = """\
+#if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
+#define REAL_WIDTH 1
+#define ALONE
+#if !defined(REAL)
+#define REAL double /* or float */
+#endif
+typedef REAL real;
+#define zero 0.0
+#define wide(value) (value)
+#define chosen(condition, then, other) ((condition) ? (then) : (other))
+{functions}#define is_above(a, b) ((a) > (b))
+#define is_at_least(a, b) ((a) >= (b))
+#define least(a, b) ((a) < (b) || (a) != (a) ? (a) : (b))
+#define OF(value, lane) (value)
+#endif
+"""
+DATA = """\
+typedef struct {{
+{fields}}} {model}_reals;
+--
+static long {model}_place_reals({model}_reals *to, const {model}_parameters *from, real *at)
+{{
+{unused}    real *const begin = at;
+{places}    return at - begin;
+}}
+--
+static void {model}_give({model}_reals *to, const {model}_parameters *from, int lane)
+{{
+    (void)lane;
+{given}}}
+"""
+BENDS = "#define BENDS\n"
+#: Around what is for run/engine alone.
+ENGINE = """\
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+"""
+END_OF_ENGINE = "#endif /* of what run/engine takes */\n"
+
+
+def macros_of(text: str) -> tuple[str, Mapping[str, str]]:
+    """Return the macros of a step, and the functions of laws by the names that they give them."""
+    lines = {f"#define {name}_of {name}\n": name for name in _LIBRARY}
+    lines = {line: name for line, name in lines.items() if line in text}
+    calls = {f"{name}_of": _LIBRARY[name] for name in lines.values()}
+    return MACROS.replace("{functions}", "".join(lines)), calls
+
+
+def fixed_parts(text: str, known: Proved) -> Iterator[str]:
+    """Yield what a step has besides macros, functions, enumerations and tables."""
+    yield from _data(text, known.iphs.circuit)
+    yield from _path_table(known)
+    if BENDS in text:
+        yield BENDS
+    if "costates" in known.slots:
+        yield ENGINE
+        yield END_OF_ENGINE
+
+
+def _data(text: str, circuit: Circuit) -> list[str]:
+    """Return the record of parameters and what fills it, with the names that the text has."""
+    model, own = circuit.model, circuit.lane_parameters
+    counts = {f"{bank}_count": "" for bank in banks(model)}
+    fields, places, given = "", "", ""
+    for count in counts:
+        places += f"    to->{count} = from->{count};\n"
+    for spec in model.parameters:
+        name = next(iter(re.findall(rf"^    real \*?({spec}_*);$", text, re.M)), spec)
+        size, place = f"{own.get(spec)}_count", "[j]" if spec in own else ""
+        fields += f"    real {'*' if spec in own else ''}{name};\n"
+        if spec in own:
+            places += f"    to->{name} = at;\n    at += from->{size};\n"
+            given += f"    for (long j = 0; j < from->{size}; ++j)\n    "
+        given += f"    OF(to->{name}{place}, lane) = from->{name}{place};\n"
+    fields += "".join(f"    long {count};\n" for count in counts)
+    unused = "    (void)to;\n    (void)from;\n"
+    words = {"fields": fields or "    char none;\n", "places": places, "given": given or unused}
+    words["unused"] = "" if counts else unused
+    return DATA.format(model=model.name, **words).split("--\n")
+
+
+def _path_table(known: Proved) -> Iterator[str]:
+    """Yield the lines by which a step tells of its stops, if the system has some."""
+    banks, name = [*known.sizes], known.iphs.model.name
+    states = [slot.label for slot in known.iphs.system.states]
+    lines = [
+        f"    {{{banks.index(bank) if bank else -1}, {int(own)}, {states.index(inner)}}},\n"
+        for inner, bank, own in known.paths
+    ]
+    if lines:
+        head = f"#define PATHS {len(lines)}\nstatic const int {name}_path[PATHS][3] = {{\n"
+        yield f"{head}{''.join(lines)}}};\n"
