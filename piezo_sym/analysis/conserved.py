@@ -20,6 +20,7 @@ def conserved_functions(changes: FloatArray, size: FloatArray) -> FloatArray:
     """
     changes = changes / size[:, None]
     changes = changes[:, np.isfinite(changes).all(axis=0) & changes.any(axis=0)]
+    changes /= np.abs(changes).max(axis=0, initial=0.0)  # squares of tiny numbers are zero
     changes /= np.linalg.norm(changes, axis=0)
     rows = np.maximum(np.abs(changes).max(axis=1, initial=0.0), FLOOR)
     triangle = np.linalg.qr((changes / rows[:, None]).T, mode="r")

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -232,7 +232,11 @@ def laminate(given, V_u, V_l, F):
 SIZES = {"l": (0.01, 0.1), "w": (1e-3, 0.03), "h": (1e-4, 1e-3), "s": (1e-11, 3e-11)}
 
 
+TINY = {"l": 0.0625, "w": 0.015625, "h": 6.948508081028393e-4, "s": 1.1397161768213753e-11}
+
+
 @settings(max_examples=20)
+@example(TINY, (0.5, 2.3141309788202364e-08), (0.0, 1.0, 2.107463779739776e-277))
 @given(
     st.fixed_dictionaries({name: st.floats(*range_) for name, range_ in SIZES.items()}),
     st.tuples(st.floats(0.1, 0.9), st.floats(1e-8, 5e-8)),
