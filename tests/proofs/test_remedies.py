@@ -167,6 +167,7 @@ def test_no_condition_is_shown_that_domain_cannot_have(temperature, known):
     assert "in [domain]" not in row.reason
 
 
+@pytest.mark.long
 def test_no_condition_is_looked_for_where_there_are_thousands_of_questions():
     """Two tables with parameters for knots have 7000 pieces of their product: it took minutes."""
     table = "table(q/{}, -2, -3, -b, -n, b, n, 2, 3)"

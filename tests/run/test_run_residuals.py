@@ -39,7 +39,7 @@ def turnover(found, names):
     return sum(np.abs(np.diff(found[name].values)).sum() for name in names)
 
 
-@pytest.mark.parametrize("rtol", [1e-2, 1e-4, 1e-6, 1e-8, 1e-12])
+@pytest.mark.parametrize("rtol", [1e-2, 1e-6, 1e-8, 1e-12])
 @pytest.mark.parametrize("damping", [1.0, 1e-4, 1e-8, 0.0])
 def test_both_balances_are_exact_however_little_is_produced(damping, rtol):
     """From states alone: the energies by hand, and the entropies of both bodies."""

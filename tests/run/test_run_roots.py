@@ -65,7 +65,7 @@ FACTORS = (
 )
 
 
-@pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-8])
+@pytest.mark.parametrize("rtol", [1e-5, 1e-8])
 @pytest.mark.parametrize("factor", FACTORS)
 def test_bodies_settle_at_one_temperature(factor, rtol):
     """Energy is kept: c*T_1 + c*T_2 is, so that both end at the mean of their temperatures."""
@@ -78,7 +78,7 @@ def test_bodies_settle_at_one_temperature(factor, rtol):
     assert np.abs(found.energy_residual.values).max() <= 4 * np.spacing(found.energy.values.max())
 
 
-@pytest.mark.parametrize("warm", [305.0, 320.0, 330.0])
+@pytest.mark.parametrize("warm", [305.0, 330.0])
 @pytest.mark.parametrize("factor", FACTORS)
 def test_a_body_settles_at_its_surroundings(factor, warm):
     text = BODIES.replace('"n > 0"', '"n > 0", "T_e > 0"') + AMBIENT.replace(
