@@ -91,7 +91,8 @@ def jump_questions(law: Law, assumptions: Assumptions) -> Iterator[Question]:
     tree = settled(law.tree, assumptions.where)
     for one, other in combinations(found, 2):
         if one.value != other.value and not _never_meet(one, other, assumptions):
-            meeting = Meeting(tree, (one, other), assumptions.where, assumptions.fixed)
+            sides, may_jump = (one, other), bool(law.letter)  # only laws of dissipation may
+            meeting = Meeting(tree, sides, assumptions.where, assumptions.fixed, may_jump)
             yield from (
                 replace(q, derived=law.derived) for q in _meeting_questions(meeting, assumptions)
             )

@@ -10,12 +10,17 @@ from functools import reduce
 from piezo_sym.errors import STICKING
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.tidying import tidied
-from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Div, Expr, Mul, Neg, names
+from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Div, Expr, Mul, Neg, Pow, names
 from piezo_sym.network import slope_of
 from piezo_sym.spec.tables import condition_text
 
 #: What to write for a law that jumps, as the end of a reason.
 JUMPS = f"; a law that jumps on purpose says discontinuous = true; {STICKING}"
+#: What to write where no law may jump: stores, temperatures, conductances, ratios.
+MEETS = (
+    "; only a law of dissipation may jump: let the two branches have one value there, as "
+    "'a if x < b else a + c*(x - b)' does at b"
+)
 #: Whether law*letter, or a law without letter, is shown to be >= 0 in the domain.
 Shown = Callable[[Expr, str], bool]
 #: Functions that are positive wherever they have a value.
@@ -39,12 +44,20 @@ def mending(law: Expr, letter: str, shown: Shown) -> str:
 
 
 def without_factors(claim: Cmp, positive: Callable[[Expr], bool]) -> Cmp:
-    """Return a claim that a product is positive, or not negative, about its other factors alone."""
-    if claim.op not in {">", ">="} or claim.right != ZERO:
+    """Return a claim on the sign of a product as one on those factors that are not positive."""
+    if claim.op not in {">", ">=", "!="} or claim.right != ZERO:
         return claim
     factors = (f for f in _factors(claim.left) if not (isinstance(f, Call) and f.function in ABOVE))
     kept = [f for f in factors if not positive(f)] or [claim.left]
     return Cmp(claim.op, tidied(reduce(mul, kept)), ZERO)
+
+
+def at_root(claim: Cmp) -> Cmp:
+    """Return a claim that an even power is positive, or not zero, as one that its base is not."""
+    match claim:
+        case Cmp(">" | "!=", Pow(base, exponent), right) if right == ZERO and exponent % 2 == 0:
+            return Cmp("!=", base, ZERO)
+    return claim
 
 
 def _factors(law: Expr) -> Iterator[Expr]:

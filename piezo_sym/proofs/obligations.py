@@ -41,6 +41,7 @@ class Meeting:
     sides: tuple[Branch, Branch]
     domain: tuple[Cmp, ...]
     fixed: frozenset[str] = frozenset()
+    may_jump: bool = False  # whether a spec can declare that the law jumps
 
 
 @final

@@ -5,27 +5,26 @@ zero, every question answered with `unsat`, and every row it rests on PROVED.  R
 witness that was evaluated exactly in the law itself.  All else is OPEN, with the reason.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import sympy as sp
 
 from piezo_sym.expressions.calculus import mul
-from piezo_sym.expressions.exact_eval import all_hold
-from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym, names
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Domain, simple_counterexample
+from piezo_sym.proofs.conditions import domain_conditions
 from piezo_sym.proofs.continuity import neighbour_questions
-from piezo_sym.proofs.domain import spec_points
 from piezo_sym.proofs.laws import branch_questions
-from piezo_sym.proofs.mending import mending, without_factors
+from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.refutation import Finding, beside_own_values, checked_model, refutation
 from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import SolverLike, opinions
-from piezo_sym.spec.elements.ports import Body
+from piezo_sym.proofs.ties import drive_of
 from piezo_sym.spec.tables import condition_text
 
 #: Size of banks in a refutation by algebra: with one lane, coupling between lanes would not show.
@@ -37,8 +36,6 @@ LOOSE = "the domain may bound what drives the element, in a way that is not look
 DECLARED = frozenset({"welldef", "temperature", "exergy", "environment"})
 #: The remedy where an integrated energy is not shown to belong to its law.
 GIVE = "the law's energy that was found could not be verified: give it, energy = '...'"
-#: Of a temperature whose law is longer, a condition has the name.
-MOST_TEXT = 24
 #: Open questions of an obligation after which no more are asked.
 MOST_OPEN = 4
 #: No condition that mends an obligation of more questions is looked for: each is asked again.
@@ -70,7 +67,10 @@ def prove(
     if verdict is Verdict.REFUTED and obligation.sign:
         reason += _mending_condition(obligation.sign, obligation.questions, solver)
     if verdict is Verdict.REFUTED and obligation.id in DECLARED:
-        reason += _domain_conditions(obligation.questions, iphs, solver)
+        reason += _domain_conditions(obligation, iphs, solver)
+    if reason.endswith(GIVE):
+        mends = _domain_conditions(obligation, iphs, solver)
+        reason = reason.removesuffix(f"; {GIVE}") + mends if mends else reason
     return Row(
         obligation.id,
         obligation.element,
@@ -238,56 +238,11 @@ def _mending_condition(sign: SignOf, questions: tuple[Question, ...], solver: So
     return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
 
 
-def _domain_conditions(questions: tuple[Question, ...], iphs: IPHS, solver: SolverLike) -> str:
-    """Return conditions for [domain], such as n > 0, under which all claims hold, or ''.
-
-    They are about parameters, inputs, states and temperatures.  The spec's own values decide
-    between > 0 and < 0 for a claim ``!= 0``, and whether they satisfy the conditions is said.
-    """
-    if len(questions) > MOST_MENDED:
+def _domain_conditions(obligation: Obligation, iphs: IPHS, solver: SolverLike) -> str:
+    """Return what mends a row of claims, as the end of a reason, or ''."""
+    if len(obligation.questions) > MOST_MENDED:
         return ""
-    points, known = spec_points(iphs), frozenset[str]()
-    known = known.union(*points)
-    broken = [q.original for q in questions if _failure(q, solver)]
-    # [domain] takes no =, as of a jump
-    if not all(claim.op != "=" and names(claim) and known >= {*names(claim)} for claim in broken):
-        return ""
-
-    def kept(condition: Cmp) -> bool:
-        return all(all_hold((condition,), point) for point in points)
-
-    def mended(conditions: tuple[Cmp, ...]) -> bool:
-        within = (replace(q, where=(*conditions, *q.where)) for q in questions)
-        return _first_failure(within, solver) is None
-
-    def positive(part: Expr) -> bool:
-        claim = Cmp(">", part, ZERO)
-        where = (*found, *questions[0].where)
-        return _failure(Question("", questions[0].order, where, claim, claim), solver) is None
-
-    found, bodies = dict[Cmp, str](), [port for _, port in iphs.circuit.of(Body)]
-    for claim in sorted(broken, key=lambda claim: len(names(claim))):
-        ops = (">", "<") if claim.op == "!=" else (claim.op,)
-        ways = [without_factors(Cmp(op, claim.left, claim.right), positive) for op in ops]
-        way = next(filter(kept, ways), ways[0])
-        warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
-        text = condition_text(way)
-        found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
-    if not found or not all(map(names, found)) or not mended((*found,)):
-        return ""
-    # leave out conditions that the others imply, long ones first
-    for claim in sorted(found, key=lambda claim: -len(found[claim])):
-        rest = tuple(c for c in found if c != claim)
-        if rest and mended(rest):
-            del found[claim]
-    return _in_words([*found.values()], kept=all(map(kept, found)))
-
-
-def _in_words(conditions: Sequence[str], *, kept: bool) -> str:
-    """Return that conditions mend a row; `kept` if the values of the spec satisfy them."""
-    said, many = " and ".join(f"'{text}'" for text in conditions), len(conditions) > 1
-    mends = f"mend{'' if many else 's'} it"
-    if not kept:
-        which = "them" if many else "it"
-        mends = f"would mend it, but the values of the spec do not satisfy {which}"
-    return f"; the condition{'s' * many} {said} in [domain] {mends}"
+    ties = drive_of(iphs, obligation.element)
+    asked = neighbour_questions(obligation.questions, solver)
+    questions = tuple(replace(q, where=(*ties, *q.where)) for q in asked)
+    return domain_conditions(questions, iphs, ties, lambda q: _failure(q, solver) is not None)

@@ -13,7 +13,7 @@ from piezo_sym.expressions.tree import Cmp, Expr, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.continuity import jumps
 from piezo_sym.proofs.domain import spec_points
-from piezo_sym.proofs.mending import JUMPS
+from piezo_sym.proofs.mending import JUMPS, MEETS
 from piezo_sym.proofs.obligations import Question
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.solvers import Answer, SolverLike
@@ -108,7 +108,8 @@ def refutation(question: Question, values: Mapping[str, Value]) -> Finding:
         reason += f", where {condition_text(question.law)} has no value"
     if question.original.op in {"=", "<"}:
         reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
-        reason += JUMPS * bool(question.meeting)
+    if question.meeting and question.original.op == "=":
+        reason += JUMPS if question.meeting.may_jump else MEETS
     return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
 
 

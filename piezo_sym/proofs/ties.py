@@ -42,6 +42,17 @@ def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
     }
 
 
+def drive_of(iphs: IPHS, element: str) -> tuple[Cmp, ...]:
+    """Return what drives an element of dissipation, as letter = drive, where that is known."""
+    words, processes = dict(_words(iphs)), iphs.circuit.of(DissipativePort, Conductor)
+    return tuple(
+        Cmp("=", Sym(port.letter), tree)
+        for (placed, port), drive in zip(processes, iphs.system.drive, strict=True)
+        if placed.element == element and isinstance(port, DissipativePort)
+        if (tree := _tree(drive, words)) is not None
+    )
+
+
 def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
     """Yield the inputs in the domain's conditions, and co-states that may not take every value.
 

@@ -1,0 +1,119 @@
+"""The conditions for [domain] under which the claims of a row hold.
+
+Input: the questions of a row, and which of them fail.  Output: what to write, as the end of a
+reason.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
+from piezo_sym.expressions.tree import ZERO, Cmp, Expr, names, replaced
+from piezo_sym.iphs import IPHS
+from piezo_sym.proofs.domain import spec_points
+from piezo_sym.proofs.mending import at_root, without_factors
+from piezo_sym.proofs.obligations import NEVER, Question
+from piezo_sym.spec.elements.ports import Body
+from piezo_sym.spec.tables import condition_text
+
+#: Of a temperature whose law is longer, a condition has the name.
+MOST_TEXT = 24
+#: What a temperature claims, in words, and what makes it true.
+RISING = {
+    "T > 0": ("T = dU/dS", "let the energy rise with S"),
+    "dT/dS > 0": ("dT/dS", "let the temperature rise with S"),
+}
+
+
+def domain_conditions(
+    questions: Sequence[Question],
+    iphs: IPHS,
+    ties: Iterable[Cmp],
+    fails: Callable[[Question], bool],
+) -> str:
+    """Return conditions for [domain], such as n > 0, under which all claims hold, or ''.
+
+    They are about parameters, inputs, states and temperatures; for letters stands what `ties` say.
+    The spec's own values decide between > 0 and < 0 for a claim ``!= 0``, and whether they satisfy
+    the conditions is said.  Where no point satisfies them, it is said what falls with S.
+    """
+    points, letters = spec_points(iphs), {tie.left: tie.right for tie in ties}
+    failed = [q for q in questions if fails(q)]
+    broken = [
+        Cmp(c.op, replaced(c.left, letters), replaced(c.right, letters))
+        for c in (q.original for q in failed)
+    ]
+    known = frozenset[str]().union(*points)
+    # [domain] takes no =, as of a jump
+    if not all(claim.op != "=" and names(claim) and known >= {*names(claim)} for claim in broken):
+        return ""
+
+    def mended(conditions: Iterable[Cmp]) -> bool:
+        more = tuple(conditions)
+        return not any(fails(replace(q, where=(*more, *q.where))) for q in questions)
+
+    found = _conditions(broken, iphs, questions[0], fails)
+    if not found:
+        return ""
+    asked = Question("", questions[0].order, (*found, *questions[0].where), NEVER, NEVER)
+    if not all(map(names, found)) or not fails(asked):
+        return _falling(failed, points)
+    if not mended(found):
+        return ""
+    # leave out conditions that the others imply, long ones first
+    for claim in sorted(found, key=lambda claim: -len(found[claim])):
+        rest = tuple(c for c in found if c != claim)
+        if rest and mended(rest):
+            del found[claim]
+    return _in_words([*found.values()], kept=all(_kept(c, points) for c in found))
+
+
+def _conditions(
+    broken: Iterable[Cmp], iphs: IPHS, question: Question, fails: Callable[[Question], bool]
+) -> dict[Cmp, str]:
+    """Return the conditions that claims need, without positive factors, and their texts."""
+    points, bodies = spec_points(iphs), [port for _, port in iphs.circuit.of(Body)]
+    found = dict[Cmp, str]()
+
+    def positive(part: Expr) -> bool:
+        claim = Cmp(">", part, ZERO)
+        return not fails(Question("", question.order, (*found, *question.where), claim, claim))
+
+    for claim in sorted(broken, key=lambda claim: len(names(claim))):
+        bare = at_root(without_factors(claim, positive))
+        ops = (">", "<") if bare.op == "!=" else (bare.op,)
+        ways = [Cmp(op, bare.left, bare.right) for op in ops]
+        way = next((way for way in ways if _kept(way, points)), ways[0])
+        warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
+        text = condition_text(way)
+        found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
+    return found
+
+
+def _kept(condition: Cmp, points: Iterable[Mapping[str, Value]]) -> bool:
+    """Return whether the values of the spec satisfy a condition."""
+    return all(all_hold((condition,), point) for point in points)
+
+
+def _falling(failed: Iterable[Question], points: Iterable[Mapping[str, Value]]) -> str:
+    """Return that a temperature, or its slope, is negative for the values of the spec, or ''."""
+    for question in failed:
+        label = question.label.partition(" where ")[0]
+        for point in points if label in RISING else ():
+            if all_hold((Cmp("<=", question.original.left, ZERO),), point):
+                value, (what, remedy) = value_of(question.original.left, point), RISING[label]
+                return (
+                    f"; {what} has to be positive, and is {float(value):g} for the values of the "
+                    f"spec: {remedy}, as exp(S/c) does"
+                )
+    return ""
+
+
+def _in_words(conditions: Sequence[str], *, kept: bool) -> str:
+    """Return that conditions mend a row; `kept` if the values of the spec satisfy them."""
+    said, many = " and ".join(f"'{text}'" for text in conditions), len(conditions) > 1
+    mends = f"mend{'' if many else 's'} it"
+    if not kept:
+        which = "them" if many else "it"
+        mends = f"would mend it, but the values of the spec do not satisfy {which}"
+    return f"; the condition{'s' * many} {said} in [domain] {mends}"
