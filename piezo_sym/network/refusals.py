@@ -77,7 +77,10 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
         expected, remedy = _inverse_law(*fixed[0])
         if node:
             return NetworkError(what, "network", f"one, or {expected}", f"{put}; or {remedy}")
-        remedy = f"{remedy}; or {_separation(ports, word == MIXED)}" if len(fixed) > 1 else remedy
+        if len(fixed) > 1:
+            remedy = f"{remedy}; or {_separation(ports, word == MIXED)}"
+        elif word != MIXED and not couplings:
+            remedy = f"{remedy}; or {_store_between(ports[0])}"
         return NetworkError(what, "network", expected, remedy)
     if node and word == MIXED:
         return NetworkError(what, "network", f"{with_article(mass)} there", put)
@@ -120,16 +123,25 @@ def _separation(ports: list[Imposing], mixed: bool) -> str:
         loose, stores = _kinds("dissipation", domains), _kinds("store", domains, ACROSS)
         return f"put {loose} between two of them, or {stores} at a node"
     (domain,) = domains
-    inertia, spring = (kind_of("store", domain, which) for which in (ACROSS, THROUGH))
-    loose, at = kind_of("dissipation", domain).name, "at" in inertia.fields
+    loose, spring = kind_of("dissipation", domain).name, kind_of("store", domain, THROUGH).name
     if ports[0].imposes is ACROSS:
-        if at:
-            return f"merge them into one, or put a {spring.name} or {loose} between them"
+        if domain.mechanical:
+            return f"merge them into one, or put a {spring} or {loose} between them"
         loose = with_article(loose)
         return f"merge those in parallel into one, or put {loose} in series with one of them"
-    place = "at the node between them"
-    place = place if at else f"between their node and '{domain.reference}'"
-    return f"merge those in series into one, or put {with_article(inertia.name)} {place}"
+    return f"merge those in series into one, or {_store_between(ports[0])}"
+
+
+def _store_between(port: Imposing) -> str:
+    """Return the advice to put a store between two that give the variable of a port."""
+    domain = port.domain
+    store = with_article(kind_of("store", domain, port.imposes.other).name)
+    if port.imposes is ACROSS:
+        where = "between them" if domain.mechanical else "in series with one of them"
+    else:
+        where = "at the node between them"
+        where = where if domain.mechanical else f"between their node and '{domain.reference}'"
+    return f"put {store} {where}"
 
 
 def _kinds(role: str, domains: Iterable[PhysicalDomain], *imposes: PowerVariable) -> str:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from piezo_sym.errors import with_article
+from piezo_sym.errors import quote, with_article
 from piezo_sym.expressions.dimensions import (
     NONE,
     Dimension,
@@ -210,6 +210,9 @@ def _own_input(fault: Check, name: str, checks: tuple[Check, ...]) -> str:
     wanted = f"one in {unit_text(fault.rule.needed)} of its own here"
     own = fault.name(name)
     used = f"{own} is used in {', '.join(others)} with another unit; " if others else ""
+    if spec := fault.origins.spec(fault.place.where):
+        table = "inputs" if f"inputs.{name}" in fault.origins.rows else "parameters"
+        wanted += f", declared in [{table}] of {quote(spec)}"
     return f"{used}give {wanted}"
 
 

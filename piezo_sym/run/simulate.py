@@ -107,7 +107,8 @@ def simulate(
         `<bank>_count` -> number of lanes. SI units.
     initial : state -> number, for a bank's state also a list of one number per lane, SI units; a
         body's temperature may stand for its entropy: {"T_body": 320.0}. Those left out keep the
-        module's initial state; stores that are joined have one state, as `show` says. Or a Dataset
+        module's initial state. Stores that are joined have one state, the sum of theirs, with the
+        ratios of what is between them: `show` says which. Or a Dataset
         of this model: the run goes on from its last state, with its parameters but for those
         given; integrals begin at 0 again.
     t0 : the time at which the run starts [s]; when left out, 0, or the last time of a Dataset.

@@ -136,7 +136,8 @@ class Part:
         old = {words[word]: word for word in reversed([*words])}
         for theirs, ours in self.component.nodes.items():
             nodes[ours] = f"{nodes[ours]} and {theirs}" if ours in nodes else theirs
-        return Within(f"components.{self.name}", f"{self.name}.", old, nodes)
+        text = self.component.spec.text
+        return Within(f"components.{self.name}", f"{self.name}.", old, nodes, text)
 
     @cached_property
     def kept(self) -> Mapping[str, Element]:

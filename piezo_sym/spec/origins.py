@@ -23,6 +23,7 @@ class Within:
     front: str  # of nodes that have its name in front
     words: Mapping[str, str]
     nodes: Mapping[str, str]
+    spec: str = ""  # the file or shipped name of its spec
 
 
 @final
@@ -54,6 +55,10 @@ class Origins:
         for part in self._within(where):
             name = part.words.get(name, name)
         return name
+
+    def spec(self, where: str) -> str:
+        """Return the spec of the component that a place is in, as a spec names it, or ''."""
+        return next((part.spec for part in reversed(self._within(where))), "")
 
     def node(self, where: str, node: str) -> str:
         """Return the place in [components] that ties a node of an element to ours, or ''."""

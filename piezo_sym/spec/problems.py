@@ -26,6 +26,11 @@ NEEDED = {  # examples of keys whose name alone does not say what to write
 }
 
 
+#: The keys for the nodes of an element, each taken for the other.
+NODES = {
+    "at": "it stands at one node, and its other one is the reference",
+    "between": "it has two nodes",
+}
 #: The faults that may have caused others come first: unknown keys, then missing ones.
 FIRST = ("extra_forbidden", "missing")
 #: The most faults that are shown.
@@ -38,7 +43,8 @@ def all_problems(error: ValidationError) -> SpecError:
     place = {kind: n for n, kind in enumerate(FIRST)}
     details.sort(key=lambda detail: place.get(detail["type"], len(FIRST)))
     meant = {(*d["loc"][:-1], _problem(d).remedy) for d in details if d["type"] == FIRST[0]}
-    problem, *others = [_problem(d) for d in details if not _explained(d, meant)]
+    found = (_problem(d) for d in details if not _explained(d, meant))
+    problem, *others = {str(fault): fault for fault in found}.values()
     for other in others[: MOST_FAULTS - 1]:
         problem.add_note(str(other))
     if more := len(others[MOST_FAULTS - 1 :]):
@@ -49,7 +55,10 @@ def all_problems(error: ValidationError) -> SpecError:
 def _explained(detail: ErrorDetails, meant: Collection[tuple[int | str, ...]]) -> bool:
     """Return whether a key is missing only because it stands there under a misspelled name."""
     *table, key = detail["loc"]
-    return detail["type"] == "missing" and (*table, f"did you mean '{key}'?") in meant
+    words = f"did you mean '{key}'?"
+    return detail["type"] == "missing" and any(
+        (*table, remedy) in meant for remedy in (words, f"{words} {NODES.get(str(key))}")
+    )
 
 
 def _problem(detail: ErrorDetails) -> SpecError:
@@ -61,13 +70,13 @@ def _problem(detail: ErrorDetails) -> SpecError:
     value = detail.get("input")
     match detail["type"]:
         case "extra_forbidden":
-            return SpecError(
-                f"unknown key {quote(place[-1])}", where, remedy=nearest(place[-1], known)
-            )
+            other = next((key for key in NODES if key in known and place[-1] in NODES), "")
+            remedy = f"did you mean '{other}'? {NODES[other]}" if other else ""
+            remedy = remedy or nearest(place[-1], known)
+            return SpecError(f"unknown key {quote(place[-1])}", where, remedy=remedy)
         case "missing" if isinstance(detail["loc"][-1], int):
-            count = detail["loc"][-1]
-            entries = "1 entry is given" if count == 1 else f"{count} entries are given"
-            return SpecError(entries, ".".join(place[:-1]), f"at least {count + 1}")
+            entries = "1 entry is given" if len(value) == 1 else "no entry is given"
+            return SpecError(entries, ".".join(place[:-1]), "two names, such as ['a', 'b']")
         case "missing":
             return SpecError("is missing", where, remedy=_missing(place[-1], known))
         case "union_tag_invalid":

@@ -48,7 +48,7 @@ def find(spec: str | Path) -> Path:
     if path.suffix != ".toml" and NAME.fullmatch(text) and not os.path.exists(path):
         remedy = f"{nearest(text, shipped())}; or give the path of a .toml file"
         beside = os.path.exists(f"{text}.toml")
-        remedy = f"did you mean the file {quote(f'{text}.toml')}?" if beside else remedy
+        remedy = f"to take the file there, write {text}.toml" if beside else remedy
         raise FileError(f"no shipped spec is called {quote(text)}", remedy=remedy)
     return path
 
@@ -120,8 +120,20 @@ def data(text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
+        if twice := _given_twice(text, str(error)):
+            raise SpecError(twice, remedy="rename or leave out one of the two") from None
         what = f"is not TOML: {str(error)[:200]}"
         raise SpecError(what, remedy="mend the syntax there") from None
+
+
+def _given_twice(text: str, fault: str) -> str:
+    """Return which key a table has twice, where that is the fault of a TOML text, or ''."""
+    if not fault.startswith("Cannot overwrite a value"):
+        return ""
+    lines, at = text.split("\n"), re.search(r"at line (\d+)", fault)
+    number = int(at[1]) if at else len(text.rstrip("\n").split("\n"))
+    key = re.match(r"\s*([\w.-]+)\s*=", lines[number - 1])
+    return f"key {quote(key[1])} is in its table twice (line {number})" if key else ""
 
 
 def _check_nesting(text: str) -> None:

@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 from test_rigid_couplings import CASES, HEAD, meant
 
-from piezo_sym import PiezoError, derive, verify
+from piezo_sym import PiezoError, derive, simulate, verify
 from piezo_sym.spec.load import parse
 
 LEVER, SPRINGS = CASES["two masses on a lever"].elements, CASES["springs in series"].elements
@@ -73,3 +73,15 @@ def test_a_joined_state_takes_a_condition():
     text = HEAD.replace("START", "").replace('"a > 0"', '"a > 0", "p*d < F_0*m_2"')
     iphs = derive(parse(text + LEVER))
     verify(iphs).raise_if_not_proved()
+
+
+def test_a_run_says_of_a_joined_state_which_one_there_is():
+    model = parse(HEAD.replace("START", "") + SPRINGS)
+    with pytest.raises(PiezoError) as caught:
+        simulate(model, duration=1e-3, initial={"q_s2": 1e-3})
+    assert str(caught.value) == (
+        "simulate.initial: unknown name 'q_s2'; it is joined into 'q', which is the sum of theirs: "
+        "see piezo-sym show"
+    )
+    with pytest.raises(PiezoError, match="unknown name 'q_s'; known: S, q"):
+        simulate(model, duration=1e-3, initial={"q_s": 1e-3})

@@ -124,7 +124,8 @@ CAUSALITY = {
         + capacitor("C1", "a", "gnd"),
         "elements 'L1', 'R1' fix each other's current at node 'b'; expected the law of 'R1' as a "
         "function of i, which is given",
-        "give the inverse law, voltage = '...' of i",
+        "give the inverse law, voltage = '...' of i (only laws c*v are turned round); or put a "
+        "capacitor between their node and 'gnd'",
     ),
     "a voltage law across a capacitor": (
         capacitor("C1", "a", "gnd") + resistor("R1", "a", "gnd", voltage="R*i**3"),
@@ -155,7 +156,8 @@ CAUSALITY = {
     "a velocity law at a mass": (
         mass("m1", "a") + damper("d1", "a", "wall", velocity="f**3/d"),
         "elements 'm1', 'd1' fix each other's velocity at node 'a'",
-        "give the inverse law, force = '...' of v",
+        "give the inverse law, force = '...' of v (only laws c*f are turned round); or put a "
+        "spring between them",
     ),
     "a force law in series with a spring": (
         spring("s1", "wall", "a") + damper("d1", "a", "wall", force="d*v**3"),
@@ -204,6 +206,13 @@ REMEDIED = {
     "a voltage law in series with an inductor": inductor("L1", "a", "b")
     + resistor("R1", "b", "gnd", voltage="R*i**3")
     + capacitor("C1", "a", "gnd"),
+    "a capacitor between a current law and an inductor": inductor("L1", "a", "b")
+    + resistor("R1", "b", "gnd", **CUBIC)
+    + capacitor("C1", "a", "gnd")
+    + capacitor("C2", "b", "gnd"),
+    "a spring between a velocity law and a mass": mass("m1", "a")
+    + spring("s1", "a", "b")
+    + damper("d1", "b", "wall", velocity="f**3/d"),
     "a force law at a mass": mass("m1", "a") + damper("d1", "a", "wall", force="d*v**3"),
     "a body for the heat": LC + resistor("R1", "a", "gnd") + BODY,
     "inputs and a body that nothing uses": LC + BODY + OTHER,

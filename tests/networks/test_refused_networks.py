@@ -185,7 +185,7 @@ REFERENCES = {
     "a mass between nodes": (
         line("m1", "mass", between=["a", "wall"], mass="m") + spring("s1", "a", "wall"),
         "elements.m1.between: unknown key 'between'",
-        "known: kind, at, count, bank, series, mass, velocity, energy, state",
+        "did you mean 'at'? it stands at one node, and its other one is the reference",
     ),
 }
 

@@ -319,8 +319,11 @@ REFUSED = {
     ONE + "without = ['lod']": "components.one.without: 'lod' is no element of 'cell'; did you mean"
     " 'load'?",
     ONE
-    + "without = ['body']": "components.one.without: elements.damper.heats names 'body', which i"
-    "s left out; leave out 'damper' too",
+    + "without = ['body']": "components.one.without: elements.damper.heats, elements.air.body na"
+    "me 'body', which is left out; leave out 'damper', 'air' too",
+    ONE
+    + "without = ['body', 'air']": "components.one.without: elements.damper.heats names 'body', "
+    "which is left out; leave out 'damper' too",
     ONE
     + "without = ['spring', 'mount', 'mass', 'middle', 'damper', 'body', 'air', 'load']": "leave"
     "s out all elements",

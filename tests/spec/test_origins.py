@@ -72,6 +72,15 @@ def test_two_names_that_are_given_one_of_ours_stay_those_of_the_component(folder
     assert "T_0" not in out.partition("elements.out.current: ")[2].partition(" is ")[0]
 
 
+def test_a_parameter_of_its_own_is_declared_in_the_file_of_the_component(folder, capsys):
+    (folder / "leak.toml").write_text(LEAK.replace('current = "v/R"', 'current = "c"'))
+    path = folder / "whole.toml"
+    path.write_text(HEAD + LEFT.replace("left", "a").replace("leak", "middle"))
+    assert run(["verify", str(path)]) == 1
+    said = "give one in A of its own here, declared in [parameters] of 'leak.toml'\n"
+    assert said in capsys.readouterr().out
+
+
 def test_one_in_a_component_of_a_component(folder, capsys):
     path = folder / "whole.toml"
     path.write_text(HEAD + LEFT.replace("left", "a").replace("leak", "middle"))

@@ -5,14 +5,13 @@ word by word, until the spec loads, derives, and has units.
 """
 
 import re
-import tomllib
 
 import pytest
 
-from piezo_sym import Model, derive
-from piezo_sym.errors import PiezoError
+from piezo_sym import PiezoError, derive
 from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.units import units
+from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import find
 
 TEXT = find("piezo_stack").read_text(encoding="utf-8")
@@ -40,6 +39,8 @@ MISTAKES = {
     "a kind almost right": ('kind = "spring"', 'kind = "springs"'),
     "a key almost right": ('stiffness = "k"', 'stifness = "k"'),
     "a body almost right": ('heats = "body"', 'heats = "bodi"'),
+    "a node for two": ('between = ["tip", "wall"]\nforce', 'at = "tip"\nforce'),
+    "two nodes for one": ('at = "tip"\nmass', 'between = ["tip", "wall"]\nmass'),
     "the reference in capitals": ('between = ["cap", "gnd"]', 'between = ["cap", "GND"]'),
     "the reference in full": ('between = ["in", "gnd"]', 'between = ["in", "ground"]'),
     "the wall in capitals": ('between = ["tip", "wall"]', 'between = ["tip", "Wall"]'),
@@ -59,6 +60,7 @@ MISTAKES = {
     "an initial state by its element": ('S = "c_0', 'body = "c_0'),
     "an initial state almost right": ('S = "c_0', 's = "c_0'),
     "a table almost right": ("[elements.spring]", "[element.spring]"),
+    "a key twice": ('stiffness = "k"', 'stiffness = "k"\nstiffness = "k"'),
 }
 
 
@@ -88,6 +90,13 @@ def mend(text: str, message: str) -> str:
         return re.sub(rf"(?m)^{found[1]} = ", f"{found[2]} = ", text, count=1)
     if found := re.search(r"writes the state of its element as its letter, '(\w+)'", message):
         return text.replace("(s/s_0)", f"({found[1]}/s_0)")
+    if found := re.search(r"key '(\w+)' is in its table twice \(line (\d+)\)", message):
+        lines = text.split("\n")
+        assert lines.pop(int(found[2]) - 1).startswith(f"{found[1]} = ")
+        return "\n".join(lines)
+    if found := re.search(r"unknown key '(at|between)'; did you mean '(at|between)'\?", message):
+        nodes = {"at": '"tip"', "between": '["tip", "wall"]'}
+        return text.replace(f"{found[1]} = {nodes[found[1]]}", f"{found[2]} = {nodes[found[2]]}")
     if found := re.search(r"calls '(\w+)', .*did you mean '(\w+)'", message):
         return text.replace(found[1], found[2])
     if found := re.search(r"'([\w ]+)'[^;]*(?:;.*)?; did you mean '(\w+)'\?", message):
@@ -99,7 +108,7 @@ def mend(text: str, message: str) -> str:
 def fault_of(text: str) -> str:
     """Return the message of the first fault; nothing where there is none."""
     try:
-        iphs = derive(Model(**tomllib.loads(text)))
+        iphs = derive(parse(text))
     except PiezoError as error:
         return str(error)
     wrong = [row for row in units(iphs) if row.verdict is not Verdict.PROVED]
@@ -120,3 +129,24 @@ def test_the_remedy_of_a_mistake_mends_it(mistake):
         text = mend(text, message)
         said.append(message := fault_of(text))
     assert message == "", said
+
+
+HEATED = """
+[model]
+name = "heated"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+T_0 = { value = 300.0, unit = "K" }
+c_0 = { value = 2.0, unit = "J/K" }
+[inputs]
+P = { unit = "W" }
+[elements]
+mass = { kind = "mass", at = "tip", mass = "m" }
+body = { kind = "mass", at = "tip", mass = "m" }
+heater = { kind = "heat_source", into = "mass", input = "P" }
+"""
+
+
+def test_a_body_is_offered_under_a_free_name():
+    found = re.search(r"add one to \[elements\]: (.*), and name '(\w+)' here", fault_of(HEATED))
+    assert fault_of(HEATED.replace('into = "mass"', f'into = "{found[2]}"') + found[1]) == ""

@@ -97,6 +97,14 @@ def test_a_law_sees_no_lane_of_a_bank():
     assert "it is a state of bank 'hysteron', whose own laws alone have its lane" in message
 
 
+def test_a_law_sees_no_single_lane_of_a_bank():
+    message = refused_edit(('force = "d*v"', 'force = "d*v*(1 + phi_1**2)"'))
+    assert "elements.damper.force: unknown name 'phi_1'; it is one lane of a state of" in message
+    assert "put 'hysteron' and 'damper' into one cell" in message
+    own = refused_edit((VOLTAGE, 'voltage = "rho/T_0*i*(1 + phi_1**2)"'))
+    assert "a law in a bank writes the state of its own lane, 'phi'" in own
+
+
 def test_a_bank_sees_no_lane_of_another():
     other = """[elements.second]
 kind = "hysteron"

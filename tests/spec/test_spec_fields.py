@@ -165,9 +165,39 @@ def test_a_condition_on_a_letter():
     assert message.startswith("spec: domain.assume[0]: 'v' has no meaning here")
 
 
+GEAR = """[elements.gear]
+kind = "gear"
+first = ["x", "frame"]
+second = ["y", "frame"]
+ratio = "omega"
+
+"""
+PAIR = """[elements.pair]
+kind = "thermoelectric"
+between = ["in", "gnd"]
+bodies = [PAIR]
+seebeck = "a"
+
+"""
+
+
 def test_the_temperature_needs_a_body_in_a_transducer():
     message = refused_edit(('ratio = "a*T/T_0"', 'ratio = "a*i/T_0"'))
-    assert message.startswith("spec: elements.transducer.ratio: 'i' has no meaning here")
+    where = "spec: elements.transducer.ratio: 'i' has no meaning here"
+    assert message.startswith(f"{where}; expected ")
+    gear = refused_edit(("[elements.load]", f"{GEAR}[elements.load]"))
+    assert "'omega' has no meaning here; expected parameters, states and temperatures" in gear
+    assert "inputs" not in gear
+
+
+def test_of_two_names_one_is_not_enough():
+    hot = PAIR.replace("PAIR", '"body"')
+    message = refused_edit(("[elements.load]", f"{hot}[elements.load]"))
+    assert "elements.pair.bodies: 1 entry is given; expected two names" in message
+    message = refused_edit(("[elements.load]", f"{PAIR.replace('PAIR', '')}[elements.load]"))
+    assert message.endswith(
+        "elements.pair.bodies: no entry is given; expected two names, such as ['a', 'b']"
+    )
 
 
 def test_every_fault_is_shown_unknown_and_missing_keys_first():

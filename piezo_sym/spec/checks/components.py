@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from piezo_sym.errors import SpecError, nearest, quote, with_article
+from piezo_sym.errors import SpecError, listing, nearest, quote, with_article
 from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.fields import Component, Input, Parameter, Tables
 from piezo_sym.spec.names import NAME, check_name
@@ -64,8 +64,16 @@ def _check_left_out(where: str, component: Component, model: Tables) -> None:
     gone = {*component.without}
     if gone >= model.elements.keys():
         raise SpecError("leaves out all elements", f"{where}.without", "some are left")
-    for name, element in model.elements.items():
-        for field, body in element.named("thermal_mass"):
-            if body in gone and name not in gone:
-                what = f"elements.{name}.{field} names {quote(body)}, which is left out"
-                raise SpecError(what, f"{where}.without", remedy=f"leave out {quote(name)} too")
+    users = {
+        name: (f"elements.{name}.{field}", body)
+        for name, element in model.elements.items()
+        for field, body in element.named("thermal_mass")
+        if body in gone and name not in gone
+    }
+    if users:
+        places, lost = zip(*users.values(), strict=True)
+        verb, bodies = "name" if len(users) > 1 else "names", dict.fromkeys(lost)
+        gone_too = f"which {'are' if len(bodies) > 1 else 'is'} left out"
+        what = f"{listing(places)} {verb} {listing(map(quote, bodies))}, {gone_too}"
+        remedy = f"leave out {listing(map(quote, users))} too"
+        raise SpecError(what, f"{where}.without", remedy=remedy)

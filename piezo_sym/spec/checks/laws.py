@@ -8,7 +8,7 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS, LETTERS
-from piezo_sym.spec.elements.base import Element, state_symbol
+from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
@@ -48,28 +48,31 @@ def check_references(spec: Tables) -> None:
         for to, field, given in ((role, *row) for role in known for row in element.named(role)):
             where = f"elements.{name}.{field}"
             if given not in known[to]:
-                raise _unknown_reference(where, to, given, tuple(known[to]), element)
+                raise _unknown_reference(where, to, given, tuple(known[to]), spec)
             if getattr(element, field) == (given, given):
                 what, remedy = f"both ends are at body {quote(given)}", "name another thermal_mass"
                 raise SpecError(what, where, "two different bodies", remedy)
 
 
 def _unknown_reference(
-    where: str, to: str, given: str, known: tuple[str, ...], element: Element
+    where: str, to: str, given: str, known: tuple[str, ...], spec: Tables
 ) -> SpecError:
     what = f"{quote(given)} is no {to} of this spec"
     if to == "input":
         meant = f"{nearest(given, known)}; or " if known else ""
-        ports = element.ports("")
+        ports = spec.elements[where.split(".")[1]].ports("")
         unit = next(p.input_unit for p in ports if isinstance(p, Source | Exchange | HeatInput))
         remedy = f'{meant}declare it in [inputs]: {given} = {{ unit = "{unit}" }}'
         return SpecError(what, where, remedy=remedy)
     if known:
         return SpecError(what, where, remedy=nearest(given, known))
     if to == "thermal_mass":
-        name = given if NAME.fullmatch(given) else "body"
+        free = NAME.fullmatch(given) and given not in spec.elements
+        others = ("body", *(f"body_{n}" for n in range(2, len(spec.elements) + 2)))
+        name = given if free else next(other for other in others if other not in spec.elements)
         body = f'{name} = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c_0)" }}'
         remedy = f"add one to [elements]: {body}"
+        remedy += "" if free else f", and name {quote(name)} here instead of {quote(given)}"
         return SpecError(what, where, "a body for the heat", remedy)
     return SpecError(what, where)
 
@@ -174,9 +177,10 @@ def _check_words(
             continue
         remedy = _state_in_law(spec, word, letters, element)
         if word in LETTERS:
-            expected = f"the letters {listing(letters)}" if letters else "parameters"
-            if {*spec.inputs} <= {*words} and states(spec).keys() <= {*words}:
-                expected = "parameters, inputs, states and temperatures"
+            expected = "parameters"
+            if {*seen(spec)} <= {*words}:
+                expected += f"{'' if element else ', inputs'}, states and temperatures"
+            expected = f"the letters {listing(letters)}" if letters else expected
             if not remedy:
                 known = {*words, *states(spec)} if element else words
                 remedy = _states_of_letter(spec, word, known)
@@ -197,16 +201,22 @@ def _check_words(
 
 def _state_in_law(spec: Tables, word: str, letters: tuple[str, ...], element: str) -> str:
     """Return why a law cannot name this state, and what to write; empty if it is no state."""
-    owner = states(spec).get(word, "")
+    known, (base, _, lane) = states(spec), word.rpartition("_")
+    single = word not in known and base in bank_states(spec) and lane.isdigit()
+    owner = known.get(base if single else word, "")
     if not owner or not element:
         return ""
     letter = spec.elements[owner].letter
+    if single and bank_of(spec)[owner] == bank_of(spec).get(element):
+        word = letter if owner == element else base
+        return f"a law in a bank writes the state of its own lane, {quote(word)}"
     if owner == element and letter in letters:
         return f"a law writes the state of its element as its letter, {quote(letter)}"
     if owner == element:
         return "it is the state of the element itself, which this law cannot use"
     if bank := bank_of(spec).get(owner):
-        why = f"it is a state of bank {quote(bank)}, whose own laws alone have its lane"
+        what = "one lane of a state" if single else "a state"
+        why = f"it is {what} of bank {quote(bank)}, whose own laws alone have its lane"
         return f"{why}; {_beside_lane(spec, owner, bank, element)}"
     return ""  # laws of stores with states of others are refused before, by `check_energies`
 
