@@ -120,6 +120,23 @@ def test_a_magnet_that_was_made_of_the_advice_is_proved():
     assert verify(derive(parse(followed(text, said)))).proved
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "needed"),
+    [
+        ('inductance = "L_0"', 'inductance = "L_0*(1 + x/x_0)"', "x_0"),
+        ('stiffness = "k"', 'force = "k*x_0*tanh(q/x_0)*T_0/T"', "k"),
+        ('stiffness = "k"', 'force = "k*q*(T_0/T) + k*q**3/x_0**2"', "k"),
+    ],
+)
+def test_all_conditions_that_the_proof_needs_are_said(old, new, needed):
+    text = SPEC.replace(', "x > -x_0"', "").replace(old, new)
+    said = refusal(text)
+    assert verify(derive(parse(followed(text, said)))).proved
+    fewer = said.replace(f', "{needed} > 0"', "")
+    assert fewer != said
+    assert not decide(derive(parse(followed(text, fewer)))).proved
+
+
 def test_two_states_of_others_are_in_one_storage():
     law = 'inductance = "L_0*x_0/(x_0 + x)*(1 + (Q/q_0)**2)"'
     said = refusal(SPEC.replace('inductance = "L_0"', law))

@@ -5,19 +5,32 @@ its charge and the body's entropy; an inductor whose inductance depends on a gap
 linkage and the gap.  For these there is the kind `storage`.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import reduce
 
 from piezo_sym.errors import SpecError, listing, quote
+from piezo_sym.expressions.calculus import add, neg
 from piezo_sym.expressions.energies import antiderivative
 from piezo_sym.expressions.parse import parse_condition
 from piezo_sym.expressions.removable import factors
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Cmp, Div, Expr, Mul, Sym, names, replace, walk
+from piezo_sym.expressions.tree import (
+    ZERO,
+    Add,
+    Cmp,
+    Div,
+    Expr,
+    Mul,
+    Num,
+    Sym,
+    names,
+    replace,
+    walk,
+)
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.fields import Tables
-from piezo_sym.spec.tables import bank_of, condition_text, states, temperatures
+from piezo_sym.spec.tables import bank_of, condition_text, greater, states, temperatures
 
 ALONE = "let it depend on parameters and its own state"
 APART = "write lanes and dissipation apart from the store, which one storage can then replace"
@@ -76,33 +89,52 @@ def _storage(spec: Tables, parts: tuple[str, ...], hot: Mapping[str, str]) -> st
         return ""
     warm = {word: heated[body].law for word, body in hot.items() if body in heated}
     energies = (_energy(own[0], warm) for own in stores.values())
-    energy = " + ".join(spell(found) if found else "<its energy>" for found in energies)
+    energy = " + ".join(spell(law) if law else "<its energy>" for law in energies)
     listed = ", ".join(f"{p.state} = {_state(p)}" for own in stores.values() for p in own)
-    name, laws = next(iter(heated), parts[0]), [p.law for own in stores.values() for p in own]
-    needs = ", ".join(f'"{condition_text(c)}"' for c in _needed(spec, parts, laws, warm))
+    name = next(iter(heated), parts[0])
+    needs = ", ".join(f'"{condition_text(c)}"' for c in _needed(spec, stores, warm))
     made = f'{name} = {{ kind = "storage", energy = "{energy}", states = {{ {listed} }} }}'
     return f"{made}, and add to assume in [domain]: {needs}" if needs else made
 
 
 def _needed(
-    spec: Tables, parts: tuple[str, ...], laws: Iterable[Expr], warm: Mapping[str, Expr]
+    spec: Tables, stores: Mapping[str, list[Storage | Body]], warm: Mapping[str, Expr]
 ) -> Iterator[Cmp]:
     """Yield what [domain] has to say, besides what it says: what the kinds of elements need.
 
-    With a body also that divisors are positive, inner ones first, and the temperature, which then
-    depends on the states of the stores, too.
+    Divisors are positive, inner ones first.  With a body so are the factors of laws of which kinds
+    need nothing, as the k of the force k*q*T/T_0, and the temperature, which then depends on the
+    states of the stores, too.
     """
-    known = {parse_condition(text, "domain.assume") for text in spec.domain.assume}
+    known = {_above(parse_condition(text, "domain.assume")) for text in spec.domain.assume}
     free: set[Expr] = {Sym(symbol) for symbol in states(spec)}
-    needed = [c for n in parts for c in spec.elements[n].row.form.requires(spec.elements[n], n)]
-    if warm:
-        trees = [n for law in laws for n in reversed([*walk(replace(law, warm))])]
+    sizes = {n: spec.elements[n].row.form.requires(spec.elements[n], n) for n in stores}
+    needed = [condition for of_kind in sizes.values() for condition in of_kind]
+    for name, port in ((name, port) for name, own in stores.items() for port in own):
+        trees = reversed([*walk(replace(port.law, warm))])
         needed += [Cmp(">", node.right, ZERO) for node in trees if isinstance(node, Div)]
+        rising = _factors(port) if warm and not sizes[name] else ()
+        needed += [Cmp(">", factor, ZERO) for factor in rising]
     needed = [Cmp(c.op, replace(c.left, warm), c.right) for c in needed]
-    needed += [Cmp(">", Sym(f"T_{n}"), ZERO) for n in parts if spec.elements[n].is_body]
+    needed += [Cmp(">", Sym(f"T_{n}"), ZERO) for n in stores if spec.elements[n].is_body]
     for condition in dict.fromkeys(needed):
-        if condition not in known and condition.left not in free and names(condition):
+        if _above(condition) not in known and condition.left not in free and names(condition):
             yield condition
+
+
+def _above(condition: Cmp) -> tuple[str, frozenset[Expr]]:
+    """Return a condition as the sign of a sum, and its terms in any order."""
+    turned = greater(condition)
+    total = add(turned.left, neg(turned.right))
+    return turned.op, frozenset(total.terms if isinstance(total, Add) else (total,))
+
+
+def _factors(port: Storage | Body) -> Iterator[Expr]:
+    """Yield the factors, free of its state, of the terms that a store's law adds up."""
+    for term in port.law.terms if isinstance(port.law, Add) else (port.law,):
+        above, below = factors(term, most=1)
+        if not any(isinstance(factor, Num) and factor.value < 0 for factor in above):
+            yield from (f for f in (*above, *below) if port.state not in names(f))
 
 
 def _energy(port: Storage | Body, warm: Mapping[str, Expr]) -> Expr | None:
