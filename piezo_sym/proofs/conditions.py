@@ -45,7 +45,9 @@ def domain_conditions(
     ]
     known = frozenset[str]().union(*points)
     # [domain] takes no =, as of a jump
-    if not all(claim.op != "=" and names(claim) and known >= {*names(claim)} for claim in broken):
+    if not broken or not all(
+        claim.op != "=" and names(claim) and known >= {*names(claim)} for claim in broken
+    ):
         return ""
 
     def mended(conditions: Iterable[Cmp]) -> bool:
@@ -53,8 +55,6 @@ def domain_conditions(
         return not any(fails(replace(q, where=(*more, *q.where))) for q in questions)
 
     found = _conditions(broken, iphs, questions[0], fails)
-    if not found:
-        return ""
     asked = Question("", questions[0].order, (*found, *questions[0].where), NEVER, NEVER)
     if not all(map(names, found)) or not fails(asked):
         return _falling(failed, points)

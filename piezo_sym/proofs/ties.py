@@ -14,6 +14,7 @@ from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Sym, names, replace
 from piezo_sym.iphs import IPHS
 from piezo_sym.network.nodes import reachable
+from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
@@ -28,11 +29,9 @@ def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
     """Return the tie of each dissipative law whose letter the domain or the law may restrict."""
     bounded, words = frozenset(_bounded(iphs)), dict(_words(iphs))
     states = {slot.label for slot in iphs.system.states}
-    processes = iphs.circuit.of(DissipativePort, Conductor)
     return {
         placed.element: None if tree is None else Cmp("=", Sym(port.letter), tree)
-        for (placed, port), drive in zip(processes, iphs.system.drive, strict=True)
-        if isinstance(port, DissipativePort)
+        for placed, port, drive in _drives(iphs)
         for read in (states & {*names(port.law)},)
         if any(
             symbol in bounded or not read.isdisjoint(names(words.get(symbol, ZERO)))
@@ -44,13 +43,18 @@ def ties(iphs: IPHS) -> Mapping[str, Cmp | None]:
 
 def drive_of(iphs: IPHS, element: str) -> tuple[Cmp, ...]:
     """Return what drives an element of dissipation, as letter = drive, where that is known."""
-    words, processes = dict(_words(iphs)), iphs.circuit.of(DissipativePort, Conductor)
-    return tuple(
-        Cmp("=", Sym(port.letter), tree)
-        for (placed, port), drive in zip(processes, iphs.system.drive, strict=True)
-        if placed.element == element and isinstance(port, DissipativePort)
-        if (tree := _tree(drive, words)) is not None
-    )
+    words = dict(_words(iphs))
+    own = ((port, drive) for placed, port, drive in _drives(iphs) if placed.element == element)
+    trees = ((port.letter, _tree(drive, words)) for port, drive in own)
+    return tuple(Cmp("=", Sym(letter), tree) for letter, tree in trees if tree is not None)
+
+
+def _drives(iphs: IPHS) -> Iterator[tuple[Placed, DissipativePort, sp.Expr]]:
+    """Yield the elements of dissipation with what drives them."""
+    processes = iphs.circuit.of(DissipativePort, Conductor)
+    for (placed, port), drive in zip(processes, iphs.system.drive, strict=True):
+        if isinstance(port, DissipativePort):
+            yield placed, port, drive
 
 
 def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:

@@ -1,9 +1,12 @@
 """Conductances with kinks: each branch is asked about, and the row says what holds."""
 
+import re
+
 import pytest
 
 from piezo_sym import derive
 from piezo_sym.proofs import Verdict, decide
+from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.load import parse
 
 SPEC = """
@@ -92,3 +95,15 @@ def test_no_condition_mends_a_power_whose_sign_is_that_of_its_letter():
     (row,) = (row for row in found if (row.id, row.element) == ("passive", "damper"))
     assert row.verdict is Verdict.REFUTED
     assert "mend" not in row.reason
+
+
+def test_the_laws_that_the_pages_of_kinds_show_are_proved():
+    text = SPEC.format("lam").replace('"T_e > 0"', '"T_e > 0", "lam >= 0", "T_0 > 0", "sigma >= 0"')
+    text = text.replace("[inputs]", 'sigma = { value = 1e-9, unit = "W/K**4" }\n[inputs]')
+    for kind in ("conduction", "ambient"):
+        law = re.search(r", as (.*?)(?: for radiation)?, but must not jump", KINDS[kind].__doc__)[1]
+        line = next(line for line in text.splitlines() if f'kind = "{kind}"' in line)
+        text = text.replace(line, line.replace('conductance = "lam"', f'conductance = "{law}"'))
+    found = decide(derive(parse(text)))
+    assert found.proved
+    assert all(word in text for word in ("**(1/2)", "**2 + T_e**2"))

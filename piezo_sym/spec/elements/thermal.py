@@ -64,7 +64,8 @@ CONDUCTION = Form(
     },
     doc="The heat flow q = conductance*(T_1 - T_2) [W] runs from the first body to the second; "
     "J couples their entropies, the driving force is T_1 - T_2 and "
-    "gamma = conductance/(T_1 T_2).",
+    "gamma = conductance/(T_1 T_2). The conductance may use T_1 and T_2, with powers and roots, as "
+    "lam*((T_1 + T_2)/(2*T_0))**(1/2), but must not jump.",
     ports=lambda element, name, _: (
         Conductor(element.between[0], element.between[1], element.law("conductance"), f"s_{name}"),
     ),
@@ -91,7 +92,8 @@ AMBIENT = Form(
     },
     doc="The input T_e [K] is the environment's temperature, conductance*(T_e/T - 1) [W/K] the "
     "entropy that flows into the body; the conjugate output is y = T, so that the power "
-    "put in is conductance*(T_e - T) [W].",
+    "put in is conductance*(T_e - T) [W]. The conductance may use T and T_e, with powers and "
+    "roots, as sigma*(T + T_e)*(T**2 + T_e**2) for radiation, but must not jump.",
     ports=lambda element, *_: (Exchange(element.body, element.law("conductance"), element.input),),
 )
 HEAT_SOURCE = Form(
