@@ -45,9 +45,7 @@ def domain_conditions(
     ]
     known = frozenset[str]().union(*points)
     # [domain] takes no =, as of a jump
-    if not broken or not all(
-        claim.op != "=" and names(claim) and known >= {*names(claim)} for claim in broken
-    ):
+    if not broken or not all(claim.op != "=" and known >= {*names(claim)} for claim in broken):
         return ""
 
     def mended(conditions: Iterable[Cmp]) -> bool:

@@ -228,15 +228,19 @@ def test_no_condition_is_shown_that_domain_cannot_have(temperature, known):
             "T = dU/dS has to be positive, and is -300 for the values of the spec: let the energy "
             "rise with S, as exp(S/c) does",
         ),
+        (
+            HEATED_BY.replace("ENERGY", "T_0*S + Q**2/(2*C)"),
+            "dT/dS has to be positive, and is 0 for the values of the spec: let the temperature "
+            "rise with S, as exp(S/c) does",
+        ),
     ],
 )
 def test_of_what_falls_with_entropy_no_contradictory_conditions_are_said(text, said):
     (row,) = (row for row in unproved(text) if row.id == "temperature")
     assert row.reason.endswith(f"; {said}")
     more = '"c > 0", "C > 0", "T_0 > 0"'
-    assert not unproved(
-        assuming(text, more).replace("exp(-S/c)", "exp(S/c)").replace("(2 - S/c)", "exp(S/c)")
-    )
+    text = assuming(text, more).replace("exp(-S/c)", "exp(S/c)").replace("(2 - S/c)", "exp(S/c)")
+    assert not unproved(text.replace("T_0*S +", "T_0*c*exp(S/c) +"))
 
 
 @pytest.mark.long
