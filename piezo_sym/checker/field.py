@@ -117,7 +117,8 @@ class Field:
         args = [self.of(arg, words) for arg in node.args]
         if node.op == "**":
             power = Fraction(node.value)
-            root = args[0] if power.denominator == 1 else self._root(args[0], power.denominator)
+            whole = power.denominator == 1 or args[0] == ZERO
+            root = args[0] if whole else self._root(args[0], power.denominator)
             return (root if power >= 0 else self._inverse(root)) ** abs(power.numerator)
         if node.op == "/":
             return args[0] * self._inverse(args[1])
@@ -145,7 +146,7 @@ class Field:
         if fixed and found.top.is_constant() and found.bottom.is_one():
             found = ONE if found != ZERO and found.top.leading_coefficient() > 0 else ZERO
         else:
-            tree = Node("if", (compare(left, ">", right), num(1), num(0)))
+            tree = Node("if", (compare(self.tree(found), ">"), num(1), num(0)))
             found = self.atom(("choice", found), tree)
             self.relations[found] = found.top**2 - found.top
         return found if condition.value in "<>" else ONE - found
@@ -239,4 +240,4 @@ class Field:
             raised = (Node("**", (atoms[n],), Fraction(int(p))) for n, p in enumerate(powers) if p)
             size = num(Fraction(int(factor.p), int(factor.q)))
             terms.append(reduce(lambda tree, part: Node("*", (tree, part)), raised, size))
-        return Node("+", tuple(terms))
+        return Node("+", tuple(terms) or (num(0),))

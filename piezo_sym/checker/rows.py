@@ -48,10 +48,10 @@ class _Audit:
 
     def look(self) -> dict[Key, str]:
         """Check the rows, each after those it rests on; return why each is not confirmed, or ''."""
-        spec, reasons, system = self.spec, self.found.reasons, [("system", "")]
+        spec, system = self.spec, [("system", "")]
         self._row("domain", "", self._own_values())
         divisors = [true(tree, "!=") for tree in self.found.divisors]
-        self._row("system", "", divisors, why=reasons.get("system", ""))
+        self._row("system", "", divisors, why=self._unlike("system"))
         for body in spec.of("body"):
             law, name = body.laws["temperature"], body.name
             slope = laws.derivative(law, ("x", name))
@@ -60,7 +60,7 @@ class _Audit:
         if not any(why for key, why in self.done.items() if key[0] == "temperature"):
             warm = (compare(sym(("T", body.name)), ">") for body in spec.of("body"))
             self.prover = Prover((*spec.conditions, *warm), self.ties)
-        wrong = self._wrong_slope()
+        wrong = self._unlike("energy")
         for name in ("skew", "casimir", "energy", "entropy"):
             why = wrong if name in ("skew", "energy") else ""
             claims = [*self.found.values] if name in ("skew", "energy") else []
@@ -109,12 +109,13 @@ class _Audit:
             reason = str(error) or type(error).__name__
         self.done[name, owner] = reason
 
-    def _wrong_slope(self) -> str:
-        """Return why dU/dx is not the co-states, or ''."""
-        unlike = (x for x, own in self.found.slopes.items() if not vanishes(*own, self.prover))
-        first = next(unlike, "")
-        known = f"dU/d{first} is not that of the network" * bool(first)
-        return self.found.reasons.get("energy", "") or known
+    def _unlike(self, subject: str) -> str:
+        """Return what is not that of the network, or ''."""
+        found = self.found.reasons.get(subject, "")
+        for (about, what), own in self.found.branched.items():
+            if not found and about == subject and not vanishes(*own, self.prover):
+                found = f"{what} is not that of the network"
+        return found
 
     def _own_values(self) -> Iterator[Claim]:
         """Yield the claims that the spec's own values, in each lane, are in its domain."""

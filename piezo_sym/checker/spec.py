@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from . import laws
 from .field import Field
+from .functions import KINKS
 from .kinds import KINDS, REFERENCES, UNITS, Kind
 from .laws import InputError, Node, build, cancelled, compare, need, num, subs, sym, symbols
 from .parts import parts, slipping_store, stem
@@ -29,8 +30,7 @@ class Element(NamedTuple):
 
     It imposes its `across` variable or not, and the opposite if its store `follows` others.  It
     heats, conducts between, or reads T of its `bodies`.  `lanes` is its bank with the size, `chain`
-    the ends between which lanes are in series.  A node ("T", body) has the potential T, and draws
-    entropy from the body.
+    the ends of lanes in series.  A node ("T", body) has the potential T, and draws its entropy.
     """
 
     name: str
@@ -73,8 +73,7 @@ class Spec(NamedTuple):
 
 def read_spec(text: str) -> Spec:
     """Return the spec of a text; raises `InputError` if the checker cannot read it."""
-    small = len(text) <= MAX_BYTES and not DOTTED.search(text)
-    need(small, "the spec is too large, or nested too deeply")
+    need(len(text) <= MAX_BYTES and not DOTTED.search(text), "the spec is too large, or too deep")
     try:
         data = tomllib.loads(text, parse_float=laws.number)
         need(set(data) <= set(TABLES), "the spec has an unknown table")
@@ -86,7 +85,7 @@ def read_spec(text: str) -> Spec:
 class _Reader:
     def __init__(self, tables: dict[str, dict[str, Any]]) -> None:
         self.tables, self.faults, self.units = tables, list[str](), dict[Symbol, Dimension]()
-        entries, self.quotients = tables["elements"], dict[str, Node]()
+        entries, self.quotients = tables["elements"], dict[str, tuple[Node, ...]]()
         self.limits = {n: e["limit"] for n, e in entries.items() if e["kind"] == "stop"}
         entries |= {name: slipping_store(name, entries[name]) for name in self.limits}
         self.parameters = self._values("parameters", "value", "p")
@@ -203,15 +202,17 @@ class _Reader:
             found = laws.derivative(own["energy"], ("x", name))
             own |= {"temperature": found} if kind.form == "body" else {}
             return found
-        if kind.form == "store" and given[0] != first:
-            return own[given[0]]
         if kind.form == "body" or not kind.costate:
             return own.get(kind.costate)
         x, rest = sym(("x", name)), own.get("rest", num(0))
         x = build("x - z", x=x, z=rest) if rest != num(0) else x
-        limit = cancelled(law := build(kind.costate, **own, x=x), x)
-        self.quotients |= {name: subs(limit, {("x", name): rest})} if limit != law else {}
-        return limit
+        sized = given[0] == first
+        limit = cancelled(law := build(kind.costate, **own, x=x) if sized else own[given[0]], x)
+        there = subs(limit, {("x", name): rest})  # sinh(q)/q is 0/0 at rest, cosh(q)/q is 1/0
+        zero, bent = Field().same(there, num(0)), {n.op for n in laws.walk(there)} & {"if", *KINKS}
+        if limit != law and (zero or (sized and bent)):
+            law, self.quotients[name] = limit, () if zero else (compare(there, "="),)
+        return law
 
     def _pairs(self, name: str, ends: list[tuple[str, str]]) -> tuple[tuple[Any, Any], ...]:
         """Return the node pairs of an element; raises if a node is in two domains."""
@@ -262,8 +263,7 @@ class _Reader:
                 own = [sym(symbol) for symbol in symbols(first) if symbol[0] == "p"]
                 sizes = own if element.kind.form == "body" else [first]
                 yield from (compare(tree, ">") for tree in sizes)
-            there = self.quotients.get(element.name, num(0))  # sinh(q)/q is 0/0 at rest, not 1/0
-            yield from () if Field().same(there, num(0)) else (compare(there, "="),)
+            yield from self.quotients.get(element.name, ())
             if limit := self.limits.get(element.name):
                 words = {w: s for w, s in self.words.items() if s[0] == "p"}
                 yield compare(self._resolved(limit, words), ">=")

@@ -15,7 +15,7 @@ from typing import Any
 from . import laws
 from .field import ONE, ZERO, Field, Ratio
 from .functions import KINKS
-from .laws import InputError, Node, need, num, parse, subs, sym, symbols, walk
+from .laws import InputError, Node, build, need, num, parse, subs, sym, symbols, walk
 from .network import Flows, SingularError, Slot, flows
 from .parts import stem
 from .prover import Claim, partial
@@ -72,8 +72,8 @@ class Finding:
     """The comparison of a published system with the laws of its network.
 
     `reasons` are by subject ("system", "energy"); `divisors` must not be zero; under `values` the
-    energy, the sum of `terms`, has a value; `letters` are functions of states; `slopes` are, by
-    state, slopes of the energy minus co-states that remain to be compared branch by branch.
+    energy, the sum of `terms`, has a value; `letters` are functions of states; `branched` are, by
+    subject and name, the differences that may be zero on each branch, and states with edges.
     """
 
     def __init__(self, spec: Spec, system: Any) -> None:
@@ -82,7 +82,7 @@ class Finding:
         self.banks = {e.name: e.lanes[0] for e in spec.elements.values() if e.lanes}
         self.counts = dict.fromkeys(self.banks.values(), LANES)
         self.field, self.known, self.values = Field(), dict[Any, Ratio](), list[Claim]()
-        self.terms, self.slopes = list[Node](), dict[str, tuple[Node, Any]]()
+        self.terms, self.branched = list[Node](), dict[tuple[str, str], tuple[Node, Any]]()
         try:
             self.text = _Published(spec, system)
             self._check()
@@ -163,25 +163,31 @@ class Finding:
         for name, (y, inflow) in own.ports.items():
             given = self.published(self.text.outputs[name], {})
             self._equal("system", given, y, f"output of {name}")
-            power += given * inflow
+            power += y * inflow  # what is published is shown to be the same
         for (name, lane), rate in own.rates.items():
             element = self.spec.elements[name]
             given = self.published(self.text.rates[element.state], {self.banks.get(name, ""): lane})
             self._equal("system", given, rate, f"rate of {element.state}")
-            power -= self.weight((name, lane)) * self._costate(element, lane) * given
+            power -= self.weight((name, lane)) * self._costate(element, lane) * rate
         self._equal("energy", power, ZERO, "dU/dt - y^T u")
         self._gradient()
 
-    def _equal(self, subject: str, given: Ratio, own: Ratio, what: str) -> None:
-        if not self.field.is_zero(given - own):
+    def _equal(self, subject: str, given: Ratio, own: Ratio, what: str, *left: Any) -> None:
+        """Compare two expressions; if they may still agree branch by branch, keep what is left."""
+        if self.field.is_zero(given - own):
+            return
+        tree, *states = left or (_without_lane(self.field.tree(given - own)),)
+        ops = {part.op for part in walk(tree) if part.op != "**" or part.value.denominator > 1}
+        lanes = "sum" in ops or any(key[2:] for key in symbols(tree))
+        if lanes or ops.isdisjoint({"if", "**", *KINKS}):
             self.reasons.setdefault(subject, f"{what} is not that of the network")
+        else:
+            self.branched[subject, what] = tree, states
 
     def _keep(self, own: Flows) -> None:
         """Store the divisors, and each letter that is a function of states of its own lane."""
         for pivot in own.pivots:
-            tree = self.field.tree(pivot).args[0]
-            lanes = {key[2:]: {k: sym(k[:2]) for k in symbols(tree)} for key in symbols(tree)}
-            self.divisors[subs(tree, *lanes.values()) if len(lanes) == 1 else tree] = None
+            self.divisors[_without_lane(self.field.tree(pivot).args[0])] = None
             self.field.nonzero |= {Ratio(factor) for factor, _ in pivot.top.factor()[1]}
         elements, owners = self.spec.elements, {"p": self.spec.lists, "E": self.banks}
         for (name, lane), letter in own.letters.items():
@@ -214,11 +220,12 @@ class Finding:
             bound = {self.banks.get(name, ""): lane}
             given = self.published(laws.derivative(energy, state), bound)
             own = self.law(self.spec.elements[name], "costate", lane)
-            costate = self.spec.elements[name].costate or num(0)
             slope = laws.derivative(subs(energy, meanings), ("x", name))
-            parts = [part for tree in (slope, costate) for part in walk(tree)]
-            ops = {part.op for part in parts if part.op != "**" or part.value.denominator > 1}
-            if "sum" in ops or ops.isdisjoint({"if", "**", *KINKS}):
-                self._equal("energy", given, own, f"dU/d{state}")
-            elif not self.field.is_zero(given - own):  # they may still agree, branch by branch
-                self.slopes[state] = Node("+", (slope, Node("neg", (costate,)))), ("x", name)
+            left = build("x - z", x=slope, z=self.spec.elements[name].costate or num(0))
+            self._equal("energy", given, own, f"dU/d{state}", left, ("x", name))
+
+
+def _without_lane(tree: Node) -> Node:
+    """Return a tree of one lane in the symbols of conditions, which hold for each lane."""
+    single = len({key[2:] for key in symbols(tree)} - {()}) < 2
+    return subs(tree, {key: sym(key[:2]) for key in symbols(tree)}) if single else tree

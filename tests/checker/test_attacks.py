@@ -85,7 +85,9 @@ FORGERIES = {
     "one rate too many": lambda system: system["rates"].update(r="0"),
     "a rate of zero": lambda system: system["rates"].update(S="0"),
     "an entropy that only falls": lambda system: system["rates"].update(S="-F_damper*v_mass/T"),
-    "a choice in a rate": lambda system: system["rates"].update(q="v_mass if T > T_0 else -v_mass"),
+    "a choice in a rate": lambda system: system["rates"].update(
+        q="v_mass if T > 2*T_0 else -v_mass"
+    ),
     "a name of itself": lambda system: system["names"]["F_damper"].update(
         law="F_damper + d*v_mass"
     ),
@@ -121,10 +123,11 @@ FORGERIES = {
 
 @pytest.mark.parametrize("name", FORGERIES)
 def test_a_forged_system_is_not_that_of_the_network(name):
-    system = stated(PIEZO_STACK)["system"]
-    FORGERIES[name](system)
-    assert system != stated(PIEZO_STACK)["system"]
-    assert Finding(shipped(), system).reasons
+    proofs = stated(PIEZO_STACK)
+    FORGERIES[name](proofs["system"])
+    assert proofs["system"] != stated(PIEZO_STACK)["system"]
+    if not Finding(shipped(), proofs["system"]).reasons:  # it is looked at branch by branch
+        assert ("system", "") in refused(PIEZO_STACK, proofs)
 
 
 @pytest.mark.parametrize("condition", ["d >= 0", "T > T_0", "rho >= 0", "T_e > T_0"])

@@ -135,4 +135,4 @@ def test_a_size_that_is_infinite_at_rest_is_not_confirmed(size):
     text = SPRING.replace('"n > 0"', '"n > 0", "q >= 0"') + "[initial]\nq = 0.1\n"
     proofs = forged(text.replace("LAW", "k*q"))
     text = text.replace('force = "LAW"', f'stiffness = "k*{size}"')
-    assert ("domain", "") in refused(text, proofs)
+    assert refused(text, proofs).keys() & {("domain", ""), ("welldef", "spring")}

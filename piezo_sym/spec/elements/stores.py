@@ -66,6 +66,9 @@ def store(size: Size) -> Form:
             law, energy = slope(law, state), law
         elif field == size.field:
             law = _continued(size, element, state)
+        else:
+            limit = without_common_factors(law, state)
+            law = limit if value_at(limit, state, ZERO) == ZERO else law
         if element.joined > 1:
             law, energy = _joined_law(law, energy, state, element.joined)
         port = replace(_storage(size, element, name, branch, law), energy=energy)
