@@ -143,7 +143,9 @@ def _swapped(node: Node, old: Node, new: Node) -> Node:
 
 
 def cancelled(law: Node, factor: Node) -> Node:
-    """Return a product without a factor that it also divides by, or else the same tree."""
+    """Return products in a sum without a factor that they also divide by, or else the same tree."""
+    if law.op in ("+", "neg"):
+        return Node(law.op, tuple(cancelled(term, factor) for term in law.args))
     sides = _factors(law)
     if not all(factor in side for side in sides):
         return law

@@ -34,11 +34,13 @@ MOST_FACTORS = 8
 
 
 def without_common_factors(node: Expr, name: str, place: Expr = ZERO) -> Expr:
-    """Return a product or quotient, its distance from `place` cancelled: (1 + sinh(x)/x)*x.
+    """Return products and quotients, their distance from `place` cancelled: (1 + sinh(x)/x)*x.
 
     Another factor stays, as (n*x + n)/(n*x + n) has no value for n = 0.  So does what is no
     multiple of the distance, as cosh(x)/x*x: there node/x is infinite.  Of kinks see `value_at`.
     """
+    if isinstance(node, Add):
+        return rebuild(node, lambda term: without_common_factors(term, name, place))
     above, below = factors(node)
     moved, changed = add(Sym(name), neg(place)), False
     for _ in range(above.count(moved)):

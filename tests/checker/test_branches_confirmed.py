@@ -78,7 +78,7 @@ def test_kinks_at_a_product_with_the_state_are_confirmed(field, name, old, new):
     assert ("energy", "") in refused(text, proofs)
 
 
-@pytest.mark.parametrize("force", ["F_0*(q/r)*sinh(q/r)/(q/r)", "F_0*sin(q/r)/(q/r)*q/r"])
+@pytest.mark.parametrize("force", ["F_0*(q/r)*sinh(q/r)/(q/r)", "k*q - F_0*sin(q/r)/(q/r)*q/r"])
 def test_a_force_that_is_zero_by_zero_at_rest_is_confirmed(force):
     text = TEXT.replace("LAW", force)
     proofs = stated(text)

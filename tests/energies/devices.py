@@ -132,6 +132,10 @@ SPRINGS = {
     "stop_by_energy": ('energy = "k*q**2/2 + k_2*max(q - g, 0)**2/2"', lambda q: stop(q)),
     "play": ('force = "k_2*deadzone(q, g)"', lambda q: 5e4 * (max(q - 0.01, 0) + min(q + 0.01, 0))),
     "hard": ('stiffness = "k*sinh(q/g)/(q/g)"', lambda q: sinh(q / 0.01)),
+    "hard_by_force": (
+        'force = "k*q + k*g*(q/g)*sinh(q/g)/(q/g)"',
+        lambda q: 100.0 * q + sinh(q / 0.01),
+    ),
     "part_hard": (
         'stiffness = "k*(1 + sinh(q/g)/(q/g))"',
         lambda q: 100.0 * q + sinh(q / 0.01),

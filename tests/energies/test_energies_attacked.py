@@ -160,6 +160,14 @@ def test_a_stiffness_without_a_limit_at_rest_is_not_proved(size):
 
 
 @pytest.mark.parametrize(
+    "law", ["k*g*cosh(q/g)*(q/g)/(q/g)", "k*max(q + g, 0)*q/q", "k*q*(q - g)/(q - g)"]
+)
+def test_a_force_with_another_hole_than_zero_at_rest_is_not_proved(law):
+    text = SPRING.format("force", law)
+    assert verdicts(text)["welldef", "spring"] == "REFUTED"
+
+
+@pytest.mark.parametrize(
     "size", ["1 + sinh(q/g)/(q/g)/(q/g)", "sin(q/g)/(q/g) - 2", "-sinh(q/g)/(q/g)"]
 )
 def test_a_stiffness_that_is_infinite_or_negative_at_rest_is_refused(size):
