@@ -65,7 +65,7 @@ def _antiderivative(text: str, name: str, positive: list[str]) -> str | None:
     tree = parse_law(text, "law")
     known = {n: sp.Symbol(n, positive=n in positive or None, real=True) for n in names(tree)}
     law, x = to_sympy(tree, known), known[name]
-    energy = sp.integrate(law, x, conds="none")
+    energy = _of_root(law, x) or sp.integrate(law, x, conds="none")
     if isinstance(energy, sp.Piecewise):  # the generic case; in the others a divisor is zero
         energy = energy.args[0][0]
     for function in BY_LOGARITHMS:
@@ -74,6 +74,21 @@ def _antiderivative(text: str, name: str, positive: list[str]) -> str | None:
         return None
     four = sp.Mul(4, sp.atan(1, evaluate=False), evaluate=False)  # laws lack pi
     return str(energy.xreplace({sp.pi: four}))
+
+
+def _of_root(law: sp.Expr, x: sp.Symbol) -> sp.Expr | None:
+    """Return an integral by s of a law with roots of s = a*x + b alone, which are of s > 0.
+
+    By x SymPy finds one with choices by |x| for them, and the imaginary unit.
+    """
+    powers = (p for p in law.atoms(sp.Pow) if p.exp.is_Rational and not p.exp.is_Integer)
+    bases = {p.base for p in powers if p.base.has(x)} - {x}
+    for base in bases if len(bases) == 1 else ():
+        slope, s = sp.diff(base, x), sp.Dummy("s", positive=True)
+        if not slope.has(x):
+            moved = law.subs(x, (s - base.subs(x, 0)) / slope)
+            return sp.integrate(moved / slope, s, conds="none").subs(s, base)
+    return None
 
 
 def main() -> None:

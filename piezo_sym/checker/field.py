@@ -90,7 +90,8 @@ class Field:
 
     def __init__(self, known: Told = lambda _: False, *, scales: bool = False) -> None:
         self.atoms, self.known, self.scales = dict[Any, tuple[int, Node]](), known, scales
-        self.relations = dict[Ratio, Any]()  # polynomials that are zero: c**2 - c, r**n - base
+        # polynomials that are zero: c**2 - c, r**n - base; of roots of sums, tried one by one
+        self.relations, self.sums = dict[Ratio, Any](), dict[Ratio, Any]()
         self.nonzero = set[Ratio]()  # factors that are zero nowhere, whatever branch is taken
 
     def atom(self, key: Any, tree: Node) -> Ratio:
@@ -193,12 +194,12 @@ class Field:
         return outside if base == ONE else outside * self._simple(base, power)
 
     def _simple(self, base: Ratio, power: int) -> Ratio:
-        """Return a root as an atom, with a relation if its base is one term without choices."""
+        """Return a root as an atom, with its relation; other bases than one term are `sums`."""
         found = self.atom((power, base), Node("**", (self.tree(base),), Fraction(1, power)))
         keys, parts = list(self.atoms), (base.top, base.bottom)
         chosen = any(keys[n][0] == "choice" for part in parts for n in self._places(part))
-        if len(base.top) == len(base.bottom) == 1 and not chosen:
-            self.relations[found] = found.top**power * base.bottom - base.top
+        plain = len(base.top) == len(base.bottom) == 1 and not chosen
+        (self.relations if plain else self.sums)[found] = found.top**power * base.bottom - base.top
         return found
 
     def _positive(self, ratio: Ratio) -> list[tuple[Ratio, int]]:
@@ -224,7 +225,8 @@ class Field:
 
     def is_zero(self, ratio: Ratio) -> bool:
         """Return whether an expression vanishes by the relations of choices and roots."""
-        return bool(self._reduced(ratio.top) == 0)
+        rest, sums = self._reduced(ratio.top), map(self._reduced, self.sums.values())
+        return bool(rest == 0) or any(divmod(rest, zero)[1] == 0 for zero in sums if zero != 0)
 
     def _reduced(self, polynomial: Any) -> Any:
         """Return a polynomial less multiples of what is zero by the relations."""

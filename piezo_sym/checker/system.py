@@ -178,8 +178,7 @@ class Finding:
             return
         tree, *states = left or (_without_lane(self.field.tree(given - own)),)
         ops = {part.op for part in walk(tree) if part.op != "**" or part.value.denominator > 1}
-        lanes = "sum" in ops or any(key[2:] for key in symbols(tree))
-        if lanes or ops.isdisjoint({"if", "**", *KINKS}):
+        if "sum" in ops or not ops & {"if", "**", *KINKS} or any(k[2:] for k in symbols(tree)):
             self.reasons.setdefault(subject, f"{what} is not that of the network")
         else:
             self.branched[subject, what] = tree, states

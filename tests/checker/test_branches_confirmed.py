@@ -1,6 +1,9 @@
 """Rates and co-states that equal those of the network on each branch, or for positive factors."""
 
+from math import sqrt
+
 import pytest
+from scipy.integrate import quad
 
 from tests.checker.stated import forged, refused, stated
 from tests.energies.kinked import TEXT
@@ -121,3 +124,19 @@ def test_a_capacitance_that_is_zero_at_rest_is_confirmed_beside_it():
     assert all(row["verdict"] == "PROVED" for row in proofs["obligations"])
     assert refused(text, proofs) == {}
     assert ("domain", "") in refused(text.replace("Q = 0.1", "Q = 0.0"), proofs)
+
+
+@pytest.mark.some(1)
+@pytest.mark.parametrize("size", ["C*(1 - Q/Q_0)**(1/2)", "C*sqrt((Q_0 - Q)/Q_0)"])
+def test_a_capacitance_with_the_root_of_a_sum_has_an_energy(size):
+    """The square of a root is its base: the energy has powers 1/2 and 3/2 of it."""
+    text = CAPACITOR.replace("Q >= 0", "Q < Q_0").replace("LAW", size).replace("START", "0.0")
+    proofs = stated(text)
+    assert all(row["verdict"] == "PROVED" for row in proofs["obligations"])
+    assert refused(text, proofs) == {}
+    energy = proofs["system"]["energy"]
+    at = {"C": 0.1, "L": 0.1, "Q_0": 0.2, "phi": 0.0, "sqrt": sqrt}
+    rise = eval(energy, {**at, "Q": 0.15}) - eval(energy, {**at, "Q": 0.0})
+    assert rise == pytest.approx(quad(lambda Q: Q / (0.1 * sqrt(1 - Q / 0.2)), 0, 0.15)[0])
+    proofs["system"]["energy"] = energy.replace("1.5", "2.5", 1)
+    assert refused(text, proofs).keys() == {("skew", ""), ("energy", "")}
