@@ -55,6 +55,12 @@ def without_common_factors(node: Expr, name: str, place: Expr = ZERO) -> Expr:
     return node
 
 
+def at_rest(law: Expr, name: str) -> Expr:
+    """Return a law with its limit where `name` is 0, if it is known to be zero there."""
+    limit = without_common_factors(law, name)
+    return limit if value_at(limit, name, ZERO) == ZERO else law
+
+
 def value_at(node: Expr, name: str, place: Expr) -> Expr:
     """Return what a law without common factors is at `place`, if it has kinks there, else 0.
 

@@ -13,7 +13,7 @@ from typing import Any, final
 from piezo_sym.expressions.calculus import add, div, inserted, mul, neg
 from piezo_sym.expressions.energies import slope
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.removable import slope_at, value_at, without_common_factors
+from piezo_sym.expressions.removable import at_rest, slope_at, value_at, without_common_factors
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Num, Sym, rename
 from piezo_sym.spec.elements.base import Fault, Form, positive, state_symbol
 from piezo_sym.spec.elements.domains import PhysicalDomain, PhysicalVariable, PowerVariable
@@ -64,11 +64,8 @@ def store(size: Size) -> Form:
         law, energy = rename(element.law(field), {letter: state}), None
         if field == "energy":
             law, energy = slope(law, state), law
-        elif field == size.field:
-            law = _continued(size, element, state)
         else:
-            limit = without_common_factors(law, state)
-            law = limit if value_at(limit, state, ZERO) == ZERO else law
+            law = _continued(size, element, state) if field == size.field else at_rest(law, state)
         if element.joined > 1:
             law, energy = _joined_law(law, energy, state, element.joined)
         port = replace(_storage(size, element, name, branch, law), energy=energy)
