@@ -200,10 +200,13 @@ def _tied(letter: str, domain: Domain) -> bool:
     return any(c.op == "=" for c in connected(domain.where, {letter}))
 
 
-def moved_counterexample(claim: Cmp, letter: str, domain: Domain) -> Numbers | None:
-    """Return numbers that break a claim: the simplest of the domain, one parameter moved."""
-    point = domain.point(NEVER, names(claim))
-    if point is None or _tied(letter, domain):
+def moved_counterexample(
+    claim: Cmp, letter: str, domain: Domain, own: Numbers | None = None
+) -> Numbers | None:
+    """Return numbers that break a claim: the domain's simplest, or `own`, one parameter moved."""
+    near = domain.related(names(claim))
+    point = {n: own[n] for n in near & own.keys()} if own else domain.point(NEVER, names(claim))
+    if not point or not point.keys() >= {*names(claim)} - {letter} or _tied(letter, domain):
         return None
     for name, (factor, step) in product(names(claim), MOVES):
         for value in TRIED[:FEW] if name != letter else ():

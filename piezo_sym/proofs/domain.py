@@ -21,6 +21,8 @@ from piezo_sym.proofs.obligations import NEVER, Obligation, Question
 from piezo_sym.proofs.solvers import SolverLike
 from piezo_sym.spec.elements.ports import Body, Coupling
 
+#: The largest denominator of short numbers.
+SHORT = 10**6
 NOTHING: Mapping[str, Fraction] = MappingProxyType({})
 #: Of a longer divisor only the beginning is shown.
 MOST_TEXT = 60
@@ -96,6 +98,14 @@ def _all_inside(assumptions: Assumptions, points: tuple[Mapping[str, Value], ...
     # equations hold by construction: they give a temperature its value
     conditions = [condition for condition in assumptions.where if condition.op != "="]
     return bool(points) and all(all_hold(conditions, point) for point in points)
+
+
+def short_points(iphs: IPHS) -> tuple[dict[str, Fraction], ...]:
+    """Return what are plain numbers of the spec's own values, with few digits."""
+    return tuple(
+        {n: v.limit_denominator(SHORT) for n, v in point.items() if isinstance(v, Fraction)}
+        for point in spec_points(iphs)
+    )
 
 
 def spec_points(

@@ -16,6 +16,7 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Domain, simple_counterexample
 from piezo_sym.proofs.conditions import domain_conditions
 from piezo_sym.proofs.continuity import neighbour_questions
+from piezo_sym.proofs.domain import short_points
 from piezo_sym.proofs.laws import branch_questions
 from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
@@ -102,7 +103,7 @@ def _decide(
     failed = _first_failure(obligation.questions, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.sign and obligation.sign.letter:
         method = "intervals"
-        failed, certificate = _by_intervals(obligation, obligation.sign, failed, solver)
+        failed, certificate = _by_intervals(obligation, iphs, obligation.sign, failed, solver)
     if failed and failed[0] is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
     if failed and failed[0] is Verdict.OPEN:
@@ -126,11 +127,11 @@ def _first_failure(questions: Iterable[Question], solver: SolverLike) -> Finding
 
 
 def _by_intervals(
-    obligation: Obligation, sign: SignOf, still_open: Finding, solver: SolverLike
+    obligation: Obligation, iphs: IPHS, sign: SignOf, still_open: Finding, solver: SolverLike
 ) -> tuple[Finding | None, tuple[Case, ...]]:
     """Return the certificate of a law that `sign_analysis` proves passive, else the finding."""
     question = obligation.questions[0]
-    found = whole_sign(sign, question.order, solver)
+    found = whole_sign(sign, question.order, solver, short_points(iphs))
     if found is None:
         return still_open, ()
     if found.verdict is Verdict.PROVED:

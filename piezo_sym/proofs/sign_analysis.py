@@ -42,10 +42,13 @@ class Outcome:
     certificate: tuple[Case, ...] = ()
 
 
-def whole_sign(sign: SignOf, order: tuple[str, ...], solver: SolverLike) -> Outcome | None:
+def whole_sign(
+    sign: SignOf, order: tuple[str, ...], solver: SolverLike, own: Iterable[Numbers] = ()
+) -> Outcome | None:
     """Return the verdict on ``law*letter >= 0`` in a domain, or None if the law has too many cases.
 
     A witness is simple in the first names of `order`; the solver decides the signs of prefactors.
+    One is also looked for near the spec's `own` values, of which none need be zero.
     """
     claim = Cmp(">=", mul(sign.law, Sym(sign.letter)), ZERO)
     domain = Domain(sign.where, order, solver)
@@ -67,8 +70,9 @@ def whole_sign(sign: SignOf, order: tuple[str, ...], solver: SolverLike) -> Outc
             reasons += search.reasons[:1] or ["bounds on the functions in it do not decide it"]
     if not reasons:
         return Outcome(Verdict.PROVED, certificate=tuple(shown))
-    if numbers := moved_counterexample(claim, sign.letter, domain):
-        return Outcome(Verdict.REFUTED, numbers)
+    for start in (None, *own):
+        if numbers := moved_counterexample(claim, sign.letter, domain, start):
+            return Outcome(Verdict.REFUTED, numbers)
     return Outcome(Verdict.OPEN, reason=reasons[0])
 
 

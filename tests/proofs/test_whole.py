@@ -2,18 +2,22 @@
 
 import json
 import random
+from fractions import Fraction
 from itertools import islice
+from math import tanh
 
 import pytest
 
+from piezo_sym import derive
 from piezo_sym.errors import SpecError
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import Cmp, Sym, names
-from piezo_sym.proofs import Verdict
+from piezo_sym.proofs import Verdict, decide
 from piezo_sym.proofs.obligations import SignOf
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.cases import cases
 from piezo_sym.proofs.solvers import solver
+from piezo_sym.spec.load import parse as load_text
 from tests.proofs import law_oracle as oracle
 from tests.proofs.certificates import check, holds, value
 from tests.proofs.user_laws import ACTIVE, DOMAIN, ORDER, PASSIVE, decided, points, split
@@ -210,3 +214,41 @@ def test_no_random_law_is_wrongly_decided():
 def test_no_law_of_many_is_wrongly_decided(part):
     for n in range(100):
         attack(f"part {part} law {n}")
+
+
+FRICTION = """[model]
+name = "friction"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+F_c = { value = 0.5, unit = "N" }
+v_0 = { value = 0.3, unit = "m/s" }
+v_s = { value = 0.2, unit = "m/s" }
+s = { value = 0.6, unit = "1" }
+[domain]
+assume = ["F_c >= 0", "s >= 0", "s < 1", "v_0 > 0", "v_s > 0", "LIMIT"]
+[elements]
+mass = { kind = "mass", at = "tip", mass = "m" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+[elements.damper]
+kind = "damper"
+between = ["tip", "wall"]
+heats = "body"
+force = "F_c*(tanh(v/v_0) - s*tanh(v/v_s))"
+"""
+
+
+@pytest.mark.parametrize(("limit", "refuted"), [("v_s < v_0", True), ("v_s >= v_0", False)])
+def test_numbers_near_those_of_the_spec_refute_a_law_that_is_zero_for_simple_ones(limit, refuted):
+    """The simplest numbers of the domain have F_c = 0 and s = 0."""
+    text = FRICTION.replace("LIMIT", limit).replace(
+        "value = 0.2", "value = 0.2" if refuted else "value = 0.4"
+    )
+    (row,) = (row for row in decide(derive(load_text(text))).rows if row.id == "passive")
+    assert (row.verdict is Verdict.REFUTED) == refuted
+    at = {name: float(Fraction(value)) for name, value in (row.witness or {}).items()}
+    if refuted:
+        assert 0 < at["v_s"] < at["v_0"]
+        slip = at["s"] * tanh(at["v"] / at["v_s"])
+        assert at["F_c"] * (tanh(at["v"] / at["v_0"]) - slip) * at["v"] < 0
