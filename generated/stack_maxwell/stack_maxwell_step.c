@@ -19,7 +19,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
+ * functions `integrands` and `stage`; the others and the tables serve Newton's method.
  */
 #include "stack_maxwell.h"
 
@@ -1480,7 +1480,6 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
     return changed;
 }
 
-
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES])
 {
@@ -1531,8 +1530,6 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
-/* Changes of lanes that stop early are not expected to shrink by more than this factor. */
-#define SHRINKS 1e-2
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */
@@ -1832,6 +1829,13 @@ static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
     return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
 
+#if !defined(COSTATES) /* else see residual.c */
+static mask MODEL(iterate_enough)(MODEL(block) *m, real h, mask where)
+{
+    return MODEL(iterate)(m, h, where);
+}
+#endif
+
 /*
  * Solve for the rates in some lanes, with as many nodes as they need; returns the lanes that
  * succeed.
@@ -1840,13 +1844,13 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
 {
     m->fine &= none_of(where);
     m->sketched = nowhere;
-    mask found = MODEL(iterate)(m, h, where);
+    mask found = MODEL(iterate_enough)(m, h, where);
     if (LOSSY) /* a dissipative step has no means */
         return found;
     const mask more = MODEL(coarse)(m, h) & found & none_of(m->sketched | m->fine);
     if (any(more)) {
         m->fine |= more;
-        found &= none_of(more) | MODEL(iterate)(m, h, more);
+        found &= none_of(more) | MODEL(iterate_enough)(m, h, more);
     }
     const mask fine = m->fine & found & none_of(m->sketched);
     if (any(fine))

@@ -43,7 +43,7 @@ class Stage:
     taken: frozenset[str]  # every name in use
     #: Functions whose sign changes where an integrand of `means` has a kink.
     bends: tuple[OutputRow, ...] = ()
-    costates: tuple[OutputRow, ...] = ()  # the mean of dU/dx, of each state
+    costates: tuple[OutputRow, ...] = ()  # dU/dx of each state, of some as given means
 
 
 @final
@@ -71,7 +71,7 @@ class Collocation:
     jumps: bool  # whether a law is declared discontinuous
     #: The path functionals, whose values a stage is given after the means.
     paths: tuple[Path, ...] = ()
-    bodies: tuple[int, ...] = ()  # the rows of all entropies
+    bodies: tuple[int, ...] = ()  # which states are entropies, a bank's counted once
 
     @property
     def takes_residuals(self) -> bool:

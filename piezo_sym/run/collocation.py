@@ -143,7 +143,7 @@ def set_scales(
     batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
     batch.largest[:] = first.scale(batch.largest)
     quiet = (batch.largest < QUIET).any(axis=1)
-    for n in np.flatnonzero(quiet).tolist() if quiet.any() else ():
+    for n in np.flatnonzero(quiet).tolist():
         batch.noise[n] = systems[n].noise(x[n])
     if batch.noise.any():
         least = first.scale(OVER_NOISE * batch.noise / tolerance)

@@ -82,6 +82,11 @@ def verdict_of(module: GeneratedModule) -> str:
     return line[1] if line else f"{UNPROVED} (its head says nothing of proofs)"
 
 
+def is_refused(module: GeneratedModule) -> bool:
+    """Return whether a module's docstring says that it is not proved; one being proved says nothing."""
+    return re.search(rf"^Proofs: +{UNPROVED}", module.__doc__ or "", re.MULTILINE) is not None
+
+
 def held(module: GeneratedModule, margins: FloatArray) -> NDArray[np.bool_]:
     """Return whether each condition holds, by its margin (conditions, *batch); nan fails."""
     strict = np.array([condition.strict for condition in module.DOMAIN], dtype=bool)

@@ -63,18 +63,18 @@ def simulate(
     The method is the discrete gradient, compiled, unless another is named. Both its balances close
     to round-off at every sample, for the states returned. With `rtol` it is Gauss collocation with
     mean co-states over each step, of order eight or twelve: the largest error of a run is about
-    rtol times each state's largest magnitude (of a bank: of any lane). The equations of a step are
-    solved to about rtol/100. The power that is left of them becomes heat of the first body, and
-    all processes heat more or less in proportion, by at most 1e-4 of what they do, so that both
-    balances are exact; where that does not do, and with `step`, they are solved to round-off. Steps
-    end where a law has a kink or a jump, or go over kinks where many lanes have some and rtol is
-    1e-6 or more. Errors add up where nothing damps them: after hundreds of periods an oscillation
-    is off in phase by more than rtol; and motions much faster than the steps may keep, after a
-    jump, errors of some tens of rtol. A sample is the end of a step of its own, so other `times`
-    change no value at the times that both have, except where heat or entropy produced would
-    decrease between samples. With `step` the order of the error is `order`, where laws and inputs
-    are smooth; steps go over kinks; and motions much faster than a step ring from step to step
-    after a jump: see
+    rtol times each state's largest magnitude (of a bank: of any lane). Where there are stores and
+    bodies, but no `stop`, the equations of a step are solved to about rtol/100; the energy that is
+    left of them goes to the first body, and the heat of every process is scaled by one factor
+    within 1e-4 of 1, so that both balances are exact. Other steps, and those that this factor would
+    not do for, are solved to round-off. Steps end where a law has a kink or a jump, or go over
+    kinks where many lanes have some and rtol is 1e-6 or more. Errors add up where nothing damps
+    them: after hundreds of periods an oscillation is off in phase by more than rtol; and motions
+    much faster than the steps may keep, after a jump, errors of some tens of rtol. A sample is the
+    end of a step of its own, so other `times` change no value at the times that both have, except
+    where heat or entropy produced would decrease between samples. With `step` the order of the
+    error is `order`, where laws and inputs are smooth; steps go over kinks; and motions much faster
+    than a step ring from step to step after a jump: see
     `dissipative_start`.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the

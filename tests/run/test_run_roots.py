@@ -60,8 +60,10 @@ pressure = "P_0*log(1 + V/V_0)"
 state = "W"
 """
 FACTORS = (
-    *("h*(1 + sqrt(abs(A - B)/T_0))", "h*(1 + abs(A/T_0 - B/T_0)**(3/2))"),
-    *("h*abs(A/T_0 - B/T_0)**(1/4)", "h*(1 + abs(A/T_0 - B/T_0)**n)"),
+    "h*(1 + sqrt(abs(A - B)/T_0))",
+    "h*(1 + abs(A/T_0 - B/T_0)**(3/2))",
+    "h*abs(A/T_0 - B/T_0)**(1/4)",
+    "h*(1 + abs(A/T_0 - B/T_0)**n)",
 )
 
 

@@ -28,7 +28,7 @@ from piezo_sym.expressions.tree import names
 NOTE = """\
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands`, `stage` and `costates`; the others and the tables serve Newton's method.
+ * functions `integrands` and `stage`{costates}; the others and the tables serve Newton's method.
  */"""
 
 #: Around what is printed for run/engine alone.
@@ -73,7 +73,8 @@ def c_step(program: Program, step: Collocation) -> str:
         give_text(program, printer.names),
     ]
     text = "\n\n".join(functions)
-    head = f'{opening(program)}\n{NOTE}\n#include "{program.name}.h"\n\n#include <math.h>'
+    note = NOTE.replace("{costates}", ", and `costates`" if step.takes_residuals else "")
+    head = f'{opening(program)}\n{note}\n#include "{program.name}.h"\n\n#include <math.h>'
     record = record_text(program, printer.names)
     called = calls(text)
     defined = (f"#define {n}_of {n}\n" for n in _LIBRARY if f"{n}_of" in called)

@@ -18,7 +18,7 @@ enum { ROUGH_ITERATIONS = 8 };
 /* Accuracy of rates that only serve to locate a switch, as a part of the tolerance. */
 #define SKETCH 0.01
 /* Accuracy of rates whose residuals become heat, as a part of the tolerance. */
-#define REST 1e-2
+#define RESIDUAL 1e-2
 /* With at least so many switches it may be better to step over kinks. */
 enum { MANY = 8 };
 /* Accuracy of a survey's steps, and the shortest of them, as a part of the longest. */
@@ -100,7 +100,7 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
     b->m.enough = SKETCH * task->tolerance / NOISE;
 #if defined(COSTATES)
     b->m.loose = b->m.early = nowhere;
-    b->m.little = REST * task->tolerance / NOISE;
+    b->m.allowed = RESIDUAL * task->tolerance / NOISE;
 #endif /* COSTATES */
     b->m.over = task->over_kinks ? none_of(nowhere) : nowhere;
 }

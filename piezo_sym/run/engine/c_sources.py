@@ -46,7 +46,7 @@ _LEFT_OUT = (
     r"#if PAIRS\n.*?#endif /\* PAIRS \*/\n",
     r"#if defined\(LANES\).*?#endif /\* LANES \*/\n",
     r"#if LOSSY.*?#endif\n",
-    r"#if defined\(COSTATES\).*?#endif /\* COSTATES \*/\n",
+    r"#if defined\(COSTATES\).*?#endif /\* COSTATES \*/\n\n?",
 )
 #: What few models need: kinks in energies, and path functionals; a step says so.
 _PARTS = {"BENDS": ("bends.c",), "PATHS": ("way.c", "stop.c", "paths.c")}
@@ -155,7 +155,6 @@ def standalone_step(model: str, step: str) -> str:
     needed = [word for word in _PARTS if f"#define {word}" in step]
     parts = [file for word in needed for file in _PARTS[word]]
     solver = c_source("gauss.c", *parts, "gaps.c", "newton.c", "nodes.c")
-    solver = solver.replace("MODEL(iterate_enough)", "MODEL(iterate)")
     others = (rf"#if defined\({w}\).*?#endif /\* {w} \*/\n" for w in _PARTS if w not in needed)
     for left_out in (*_LEFT_OUT, *others):
         solver = re.sub(left_out, "", solver, flags=re.DOTALL)

@@ -33,7 +33,7 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
         SET(t.planned, lane, l->phase == STEP && b->fixed == 0.0);
         SET(b->m.sketch, lane, IN(t.planned, lane) && !l->settled);
         SET(t.known, lane, l->known > 0.0);
-        SET(t.loose, lane, b->fixed == 0.0 && !b->tape && !l->exact);
+        SET(t.loose, lane, b->fixed == 0.0 && !b->tape && !l->to_round_off); /* a tape has exact roots */
         l->solves += !IN(t.sampling, lane);
         LANE(&t.h, 0, lane) = l->length;
         const double ahead = MODEL(begin)(l) - l->t; /* of the run */
@@ -65,7 +65,10 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
     MODEL(add_residual)(m, m->reached, b->some_rows);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         MODEL(lane) *l = b->lane + lane;
-        l->exact = IN(t->loose & none_of(m->loose), lane) ? EXACT : l->exact - (l->exact > 0);
+        if (IN(t->loose & none_of(m->loose), lane))
+            l->to_round_off = TO_ROUND_OFF;
+        else if (l->to_round_off > 0)
+            --l->to_round_off;
     }
 #endif /* COSTATES */
     if (any(t->resumed))

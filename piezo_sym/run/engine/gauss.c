@@ -79,10 +79,10 @@ typedef struct {
     real *bend, *look, *cut, *piece_slope; /* see bends.c */
 #endif /* BENDS */
 #if defined(COSTATES) /* see residual.c */
-    real *costate, *end_mean;  /* co-states; means at the end of the step */
-    real taken, scale;         /* entropy that the first body takes; factor on what processes produce */
+    real *costate, *integrand; /* at a point */
+    real taken, scale;         /* entropy that the first body takes; factor on what processes book */
     mask loose, early;         /* lanes that may stop short of round-off; lanes that did */
-    double little;             /* in units of noise: what may be left of a change */
+    double allowed;            /* in units of noise: how far from their root they may be */
 #endif /* COSTATES */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes that step over kinks: each stage chooses its branches */
@@ -209,7 +209,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
 #endif /* PATHS */
 #if defined(COSTATES)
     PLACE(costate, n);
-    PLACE(end_mean, m->means);
+    PLACE(integrand, m->means);
 #endif /* COSTATES */
     m->fresh = m->slope; /* of one run there is no lane that keeps its slopes */
     if (REAL_WIDTH > 1)

@@ -31,7 +31,7 @@ from piezo_sym.run.engine.c_sources import (
     steps_source,
 )
 from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, passed_by, processor
-from piezo_sym.run.module import UNPROVED, GeneratedModule
+from piezo_sym.run.module import GeneratedModule
 
 Layout = Literal["one", "many", "lanes", "slopes"]
 #: The files to compile, which include the others.
@@ -43,8 +43,7 @@ DIGEST, BUILD, LEFT_SECONDS = ".sha256", ".build-", 3600.0
 #: The parts of C that depend on a spec's values: comments, and the initializer.
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _VALUES = re.compile(r"^#define \w+_DEFAULTS \{ \\\n(?:.*\\\n)*\}$", re.MULTILINE)
-#: The verdict in a header whose model is not proved, and what C is told of it: see real.h.
-_UNPROVED = re.compile(rf"^ \* Proofs: +{UNPROVED}", re.MULTILINE)
+#: What C is told of a model that is not proved: see real.h.
 NOT_PROVED = "#define NOT_PROVED\n"
 #: The environment variable for the folder of caches.
 CACHE = "HOME" if sys.platform == "darwin" else "XDG_CACHE_HOME"
@@ -62,7 +61,7 @@ class Sources:
     Without `stages` a library has the module's functions; with them, its steps, from
     ``<name>_step.c``. `layout` says what vectors hold: "many" runs, the "lanes" of banks, or the
     stages of "one" run; with "slopes" the library has the derivatives of a step. `lossy` steps are
-    dissipative.
+    dissipative. `proved` says whether the model is, or is about to be.
     """
 
     name: str
@@ -72,6 +71,7 @@ class Sources:
     stages: int = 0
     layout: Layout = "one"
     lossy: bool = False
+    proved: bool = True
 
     def files(self) -> dict[str, str]:
         """Return the texts to compile by file name, without values, on which no code depends."""
@@ -80,11 +80,11 @@ class Sources:
         if self.stages:
             texts[f"{self.name}_step.c"] = self.step
             texts["elimination.c"] = c_source("elimination.c")
-            lossy, laws = self.lossy, NOT_PROVED if _UNPROVED.search(self.header) else ""
+            lossy, head = self.lossy, "" if self.proved else NOT_PROVED
             driver = steps_source(self.name, self.stages, self.layout, lossy=lossy)
-            texts["driver.c"] = laws + driver
+            texts["driver.c"] = head + driver
             if lanes := stage_lanes(self.stages, self.layout, lossy=lossy):
-                texts["stages.c"] = laws + stages_source(self.name, lanes)
+                texts["stages.c"] = head + stages_source(self.name, lanes)
         else:
             texts["driver.c"] = functions_source(self.name)
         return {name: _COMMENT.sub(" ", text) for name, text in texts.items()}

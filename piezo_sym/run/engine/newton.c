@@ -30,8 +30,10 @@ enum { MOST_OF_FIXED = 1000, LATE = 900, NOISY = 300 };
 #define NEAR 1e8
 /* Largest residual of a root, relative to the state: round-off of a stiff state leaves as much. */
 #define LEFT 0.01
+#if defined(COSTATES)
 /* Changes of lanes that stop early are not expected to shrink by more than this factor. */
 #define SHRINKS 1e-2
+#endif /* COSTATES */
 /* If the second change is more than this, in units of noise, more nodes are considered at once. */
 #define FAR 1e9
 /* Changes oscillate where at least this part of one comes back with the other sign. */
@@ -266,9 +268,9 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const real left = worst / (before + NO_SIZE);
         mask good = (worst <= 4.0) | (near & (worst * largest_of(left, left_before) <= 4.0));
 #if defined(COSTATES)
-        const mask exact = good;
+        const mask to_noise = good;
         if (iteration)
-            good |= m->loose & smaller & (worst * largest_of(left, wide(SHRINKS)) <= m->little);
+            good |= m->loose & smaller & (worst * largest_of(left, wide(SHRINKS)) <= m->allowed);
 #endif /* COSTATES */
         if (iteration > 1) { /* stagnation: round-off, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
@@ -285,7 +287,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
             good |= m->sketched;
         }
 #if defined(COSTATES)
-        m->early |= going & good & none_of(exact | m->sketched);
+        m->early |= going & good & none_of(to_noise | m->sketched);
 #endif /* COSTATES */
         found |= going & good;
         going &= none_of(good | lost);

@@ -104,6 +104,13 @@ static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
     return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
 
+#if !defined(COSTATES) /* else see residual.c */
+static mask MODEL(iterate_enough)(MODEL(block) *m, real h, mask where)
+{
+    return MODEL(iterate)(m, h, where);
+}
+#endif
+
 /*
  * Solve for the rates in some lanes, with as many nodes as they need; returns the lanes that
  * succeed.

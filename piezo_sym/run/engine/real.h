@@ -156,9 +156,9 @@ static inline real tanh_of(real z)
     }
 
 /*
- * Roots and powers. The laws of a model that is proved take them of no number below zero. A stage
- * beyond a kink does, if it still has the branch before it: sqrt(abs(v)) is sqrt(-v) there, until the
- * step is cut at v = 0. They go on as odd functions, so that the kink can be located.
+ * Roots and powers, which go on as odd functions below zero. A model that is proved takes them of no
+ * such number in its domain; but a stage beyond a kink does, if it still has the branch before it, as
+ * sqrt(-v) for sqrt(abs(v)). With a value there the kink can be located, and the step cut at it.
  */
 #if defined(NOT_PROVED)
 #define RADICAND(a) (a)

@@ -1,55 +1,82 @@
 /*
- * Newton's method may stop short of round-off in steps with a tolerance: what it leaves of the
- * equations becomes heat. Comes after newton.c.
+ * Steps with a tolerance are not solved to round-off: what Newton's method leaves of their equations
+ * becomes heat. Comes after newton.c.
  *
  * With rates K_i at the stages, and F_i by the laws there, U_1 - U_0 = h sum_i b_i Ebar_i . K_i
  * differs from what the ports supply, h sum_i b_i Ebar_i . F_i, by h sum_i b_i Ebar_i . (F_i - K_i).
- * The first body takes that from or to its entropy at the end of the step, at the temperature T_1
- * there, so that the energy is exact; the second order in it is far below round-off. The entropy of
- * all bodies then exceeds what the processes produce, and what is exchanged, by a small number of
- * either sign. All processes produce, and heat, in proportion more or less, so that this balance is
- * exact, too. It has to be so little that none changes its sign or its leading digits: else the
- * iteration goes on to round-off.
+ * The first body takes that energy at the end of the step, at its mean temperature while it does. The
+ * entropies of all bodies then differ from what processes produce, and exchanges bring, by a small
+ * number of either sign; the heat and entropy of every process are scaled by one factor that makes
+ * up for it. So both balances are exact.
+ *
+ * The factor has to be within MOST_SCALED of 1, and the energy so small that the mean temperature is
+ * that of half of it. Else the step is solved to round-off.
  */
 #if defined(COSTATES)
-/* The largest part of the entropy produced in a step that residuals may add to it. */
-#define LITTLE 1e-4
+#define MOST_SCALED 1e-4
+/* What the mean temperature may be off, times the entropy taken, as a part of that entropy's round-off. */
+#define MOST_BENT 0.03
 
-/* Take the residuals of some lanes as heat; returns the lanes where that is little. */
-static mask MODEL(take_residual)(MODEL(block) *m, real h, mask where)
+/* The temperature of the first body with more entropy than at a point; `x` and `costate` are written. */
+static real MODEL(heated_temperature)(const MODEL(block) *m, real *x, real more)
 {
-    const long n = m->n, body = m->first[MODEL(heated)], ports = MODEL(output_count);
-    real power[STAGES], left = zero, gained = zero, produced = zero;
-    MODEL(residual_power)(m, h, power);
-    for (long i = 0; i < STAGES; ++i) {
-        const real *const gap = m->gap + i * n;
-        const real *const rows = m->rows + i * m->booked + ports + m->processes;
-        real entropy = zero, made = zero;
-        for (long j = 0; j < MODEL(bodies); ++j) {
-            const long record = MODEL(body)[j];
-            const long end = record + 1 < MODEL(records) ? m->first[record + 1] : n;
-            for (long k = m->first[record]; k < end; ++k)
-                entropy += gap[k];
-        }
-        for (long k = 0; k < m->processes; ++k)
-            made += rows[k];
-        left += stage_weight[i] * power[i];
-        gained += stage_weight[i] * entropy;
-        produced += stage_weight[i] * made;
-    }
-    MODEL(reach_of)(m, h, stage_weight, m->reached);
-    MODEL(integrands)(m->reached, &m->p, m->end_mean);
-    MODEL(costates)(m->reached, m->end_mean, &m->p, m->costate);
-    const real taken = h * left / m->costate[body], more = taken - h * gained, made = h * produced;
-    const real most = m->little * NOISE * (m->largest[body] + size_of(m->x[body]));
-    const mask few = size_of(more) <= LITTLE * made, small = size_of(taken) <= most;
-    const mask fits = where & few & small, some = made > 0.0, beyond = made < 0.0;
-    m->taken = chosen(fits, taken, m->taken);
-    m->scale = chosen(fits & some, 1.0 + more / made, m->scale);
-    return fits | beyond; /* a switch lies within a step that consumes entropy: it will be cut */
+    const long body = m->first[MODEL(heated)];
+    x[body] += more;
+    MODEL(integrands)(x, &m->p, m->integrand);
+    MODEL(costates)(x, m->integrand, &m->p, m->costate);
+    return m->costate[body];
 }
 
-/* Take what was left of the equations into the end of a step, and into what it books. */
+/*
+ * What the residuals of a step add up to: the energy that they lack, what they add to the entropies of
+ * bodies, and the entropy that processes produce.
+ */
+static void MODEL(add_up_residuals)(const MODEL(block) *m, real h, real *energy, real *entropy,
+                                    real *produced)
+{
+    real power[STAGES];
+    MODEL(residual_power)(m, h, power);
+    *energy = *entropy = *produced = zero;
+    for (long i = 0; i < STAGES; ++i) {
+        const real *const gap = m->gap + i * m->n, weight = h * stage_weight[i];
+        const real *const rows = m->rows + i * m->booked + MODEL(output_count) + m->processes;
+        for (long j = 0; j < MODEL(bodies); ++j) {
+            const long record = MODEL(body)[j];
+            const long end = record + 1 < MODEL(records) ? m->first[record + 1] : m->n;
+            for (long k = m->first[record]; k < end; ++k)
+                *entropy += weight * gap[k];
+        }
+        for (long k = 0; k < m->processes; ++k)
+            *produced += weight * rows[k];
+        *energy += weight * power[i];
+    }
+}
+
+/*
+ * Make heat of the residuals of some lanes; returns the lanes that need no more iterations: where that
+ * is possible, or the step consumes entropy, so that it will be refused or cut at a switch.
+ */
+static mask MODEL(take_residual)(MODEL(block) *m, real h, mask where)
+{
+    const long body = m->first[MODEL(heated)];
+    real energy, entropy, produced;
+    MODEL(add_up_residuals)(m, h, &energy, &entropy, &produced);
+    MODEL(reach_of)(m, h, stage_weight, m->reached);
+    const real size = m->largest[body] + size_of(m->x[body]);
+    const real first = MODEL(heated_temperature)(m, m->reached, zero), about = energy / first;
+    const real mean = MODEL(heated_temperature)(m, m->reached, 0.5 * about), taken = energy / mean;
+    const real bend = (mean - first) / first, more = taken - entropy;
+    const mask is_small = size_of(taken) <= m->allowed * NOISE * size;
+    const mask is_straight = size_of(taken) * bend * bend <= MOST_BENT * NOISE * size;
+    const mask is_scaled = size_of(more) <= MOST_SCALED * produced;
+    const mask fits = where & is_small & is_straight & is_scaled;
+    const mask some = produced > 0.0, consumes = produced < 0.0;
+    m->taken = chosen(fits, taken, m->taken);
+    m->scale = chosen(fits & some, 1.0 + more / produced, m->scale);
+    return fits | consumes;
+}
+
+/* Take the residuals' energy into the end of a step, and scale what processes book. */
 static void MODEL(add_residual)(const MODEL(block) *m, real *end, real *booked)
 {
     real *const rows = booked + MODEL(output_count);
@@ -57,13 +84,11 @@ static void MODEL(add_residual)(const MODEL(block) *m, real *end, real *booked)
     for (long k = 0; k < 2 * m->processes; ++k)
         rows[k] *= m->scale;
 }
-#endif /* COSTATES */
 
-/* Solve for the rates in some lanes, to round-off where the rest cannot become heat. */
+/* Solve for the rates in some lanes, to round-off where residuals cannot become heat. */
 static mask MODEL(iterate_enough)(MODEL(block) *m, real h, mask where)
 {
     mask found = MODEL(iterate)(m, h, where);
-#if defined(COSTATES)
     const mask early = m->early & found;
     m->taken = chosen(where, zero, m->taken);
     m->scale = chosen(where, wide(1.0), m->scale);
@@ -71,10 +96,9 @@ static mask MODEL(iterate_enough)(MODEL(block) *m, real h, mask where)
         const mask again = early & none_of(MODEL(take_residual)(m, h, early));
         if (any(again)) {
             m->loose &= none_of(again);
-            m->early &= none_of(again);
             found &= none_of(again) | MODEL(iterate)(m, h, again);
         }
     }
-#endif /* COSTATES */
     return found;
 }
+#endif /* COSTATES */

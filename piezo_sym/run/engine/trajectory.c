@@ -62,7 +62,7 @@ typedef struct {
     int phase, behind, predicted, fresh, last, cuts, refused, halved;
     int stuck;   /* whether it goes over kinks since it could not end at them */
     int crawled; /* steps in a row that are hardly longer than round-off of the time */
-    int exact;   /* how many steps are still solved to round-off: see residual.c */
+    int to_round_off; /* how many steps are still solved so: see residual.c */
     int settled; /* whether no switch was located after all: the step is solved to full accuracy */
     long which; /* the switch at the end of the step; -1 if none */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
@@ -96,8 +96,8 @@ typedef struct {
 } MODEL(batch);
 
 enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
-/* So many steps are solved to round-off after one whose residuals were too much to be heat. */
-enum { EXACT = 20 };
+/* So many steps are solved to round-off after one whose residuals could not become heat. */
+enum { TO_ROUND_OFF = 20 };
 /*
  * A run ends after so many steps in a row that are at most CRAWL times the time at its end: at the edge
  * of the domain a law may grow without bound, and 10^15 steps would not lead it over.
