@@ -83,7 +83,10 @@ def verdict_of(module: GeneratedModule) -> str:
 
 
 def is_refused(module: GeneratedModule) -> bool:
-    """Return whether a module's docstring says that it is not proved; one being proved says nothing."""
+    """Return whether a module's docstring says that it is not proved.
+
+    While a module is being proved, it says nothing.
+    """
     return re.search(rf"^Proofs: +{UNPROVED}", module.__doc__ or "", re.MULTILINE) is not None
 
 

@@ -74,8 +74,7 @@ def simulate(
     end of a step of its own, so other `times` change no value at the times that both have, except
     where heat or entropy produced would decrease between samples. With `step` the order of the
     error is `order`, where laws and inputs are smooth; steps go over kinks; and motions much faster
-    than a step ring from step to step after a jump: see
-    `dissipative_start`.
+    than a step ring from step to step after a jump: see `dissipative_start`.
 
     SciPy's methods hold the error of each step below rtol*|x| + atol. atol is rtol*1e-3 times the
     scale of the state: its largest magnitude (for a bank: that of any lane) in a coarse first run

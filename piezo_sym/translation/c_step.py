@@ -8,15 +8,16 @@ by function and row.  The grammar:
     helper      static inline real power_N_of(real z) { return expression; }
     table       enum { NAME = n, ... };    static const int NAME[] = { n, ... };
 
-Macros and fixed parts are those of `c_step_parts`.  A mean that a stage is given is that of its integrand: a co-state
-and what is free of the state.  A branch is 1 where its switching function is positive, else 0; a
-stage chooses by branches alone: ``chosen(NAME > 0.0, value, value)``.  `slopes` and most tables
-behind it serve Newton's method alone, and `bends`, which a line ``#define BENDS`` announces, says
-where the engine splits means: of them nothing is said, but that they are in the grammar, and that
-what they write fills its array.  Where the system has stops, a table tells of each the bank,
-whether its lanes have drives of their own, and its inner state; `path_parameters` are stiffness and
-limit of the inner state, `drives` the rates of coordinates.  Without stops, where there are stores
-and bodies, `costates` are those of all states, and a table tells which states are entropies.
+Macros and fixed parts are those of `c_step_parts`. A mean that a stage is given is that of its
+integrand: a co-state and what is free of the state. A branch is 1 where its switching function is
+positive, else 0; a stage chooses by branches alone: ``chosen(NAME > 0.0, value, value)``. `slopes`
+and most tables behind it serve Newton's method alone, and `bends`, which a line ``#define BENDS``
+announces, says where the engine splits means: of them nothing is said, but that they are in the
+grammar, and that what they write fills its array. Where the system has stops, a table tells of each
+the bank, whether its lanes have drives of their own, and its inner state; `path_parameters` are
+stiffness and limit of the inner state, `drives` the rates of coordinates. Without stops, where
+there are stores and bodies, `costates` are those of all states, and a table tells which states are
+entropies.
 """
 
 import ast
