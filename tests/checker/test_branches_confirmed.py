@@ -46,6 +46,14 @@ def test_a_conductance_with_a_root_or_a_limit_is_confirmed(law, old, new):
     assert refused(text, proofs)["system", ""] == "rate of S is not that of the network"
 
 
+@pytest.mark.parametrize("more", ["h/(0*T_0)", "h/(T - T)"])
+def test_a_divisor_that_is_zero_by_its_form_is_told(more):
+    text = CONTACT.replace("LAW", "h*(1 + saturate((T - T_e)/T_0, 0.1))")
+    proofs = stated(text)
+    proofs["system"]["rates"]["S"] += f" + {more}"
+    assert refused(text, proofs)["system", ""] == "a divisor is zero by its form"
+
+
 def test_factors_that_may_be_negative_are_not_taken_out_of_roots():
     """sqrt(T_e**2) is T_e where T_e is positive."""
     text = CONTACT.replace("LAW", "h*(T_e**2/T**2)**(1/2)")
@@ -99,6 +107,45 @@ def test_a_force_without_a_value_elsewhere_is_not_confirmed(force):
     text = TEXT.replace("LAW", force)
     proofs = forged(TEXT.replace("LAW", "k*q/(1 + (q/r)**2)"))
     assert ("welldef", "spring") in refused(text, proofs)
+
+
+SLIP = """[model]
+name = "slip"
+[parameters]
+M = { value = 2.0, unit = "kg" }
+k = { value = 5.0, unit = "N/m" }
+s = { value = 0.2, unit = "m" }
+F_0 = { value = 0.7, unit = "N" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[domain]
+assume = ["k > 0", "s > 0", "F_0 > 0"]
+[elements]
+mass = { kind = "mass", at = "a", mass = "M" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+[elements.spring]
+kind = "spring"
+between = ["a", "wall"]
+force = "LAW"
+state = "q"
+slip = "(v if f >= F_0 else 0) if v > 0 else (v if f <= -F_0 else 0)"
+heats = "body"
+discontinuous = true
+"""
+
+
+def test_a_slip_may_jump_and_the_force_of_its_spring_may_not():
+    """Where the force is another at one place, no energy has it as its slope there."""
+    text = SLIP.replace("LAW", "k*q + k*max(q - s, 0)")
+    proofs = stated(text)
+    assert all(row["verdict"] == "PROVED" for row in proofs["obligations"] if row["required"])
+    assert refused(text, proofs) == {}
+    for more in ("(F_0 if q >= 0 else 0)", "((F_0 if q <= s else 0) if q >= s else 0)"):
+        text = SLIP.replace("LAW", f"k*q + {more}")
+        proofs = forged(text)
+        rows = [row for row in proofs["obligations"] if row["id"] != "continuous"]
+        assert refused(text, {**proofs, "obligations": rows})["continuous", "spring"] == "missing"
+        assert "does not follow" in refused(text, proofs)["continuous", "spring"]
 
 
 CAPACITOR = """[model]
