@@ -63,7 +63,7 @@ def domain_conditions(
         rest = tuple(c for c in found if c != claim)
         if rest and mended(rest):
             del found[claim]
-    return _in_words([*found.values()], kept=all(_kept(c, points) for c in found))
+    return in_words([*found.values()], kept=all(_kept(c, points) for c in found))
 
 
 def _conditions(
@@ -107,7 +107,7 @@ def _falling(failed: Iterable[Question], points: Iterable[Mapping[str, Value]]) 
     return ""
 
 
-def _in_words(conditions: Sequence[str], *, kept: bool) -> str:
+def in_words(conditions: Sequence[str], *, kept: bool) -> str:
     """Return that conditions mend a row; `kept` if the values of the spec satisfy them."""
     said, many = " and ".join(f"'{text}'" for text in conditions), len(conditions) > 1
     mends = f"mend{'' if many else 's'} it"

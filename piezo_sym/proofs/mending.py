@@ -1,6 +1,6 @@
 """The condition for [domain] under which a refuted law takes power in.
 
-Input: the law of a refuted row.  Output: the condition as text, or ''.  A law c*f, where f takes
+Input: the law of a refuted row.  Output: the condition, or None.  A law c*f, where f takes
 power in, does so where c >= 0; factors of c that the domain keeps from being negative are left out.
 """
 
@@ -12,7 +12,6 @@ from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.tidying import tidied
 from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Div, Expr, Mul, Neg, Pow, names
 from piezo_sym.network import slope_of
-from piezo_sym.spec.tables import condition_text
 
 #: What to write for a law that jumps, as the end of a reason.
 JUMPS = f"; a law that jumps on purpose says discontinuous = true; {STICKING}"
@@ -27,8 +26,8 @@ Shown = Callable[[Expr, str], bool]
 ABOVE = frozenset({"exp", "cosh"})
 
 
-def mending(law: Expr, letter: str, shown: Shown) -> str:
-    """Return the condition under which a law has the sign of its letter, or '' if none is found.
+def mending(law: Expr, letter: str, shown: Shown) -> Cmp | None:
+    """Return the condition under which a law has the sign of its letter; None if none is found.
 
     A conductance has the letter '' and must be >= 0.
     """
@@ -36,11 +35,9 @@ def mending(law: Expr, letter: str, shown: Shown) -> str:
     factors = list(_factors(law if slope is None else slope))
     rest = [f for f in factors if letter and letter in names(f)]
     if letter and slope is None and not (rest and shown(reduce(mul, rest), letter)):
-        return ""
+        return None
     kept = [f for f in factors if f not in rest and not shown(f, "")]
-    if not any(map(names, kept)):
-        return ""
-    return condition_text(Cmp(">=", reduce(mul, kept), ZERO))
+    return Cmp(">=", reduce(mul, kept), ZERO) if any(map(names, kept)) else None
 
 
 def without_factors(claim: Cmp, positive: Callable[[Expr], bool]) -> Cmp:

@@ -11,12 +11,13 @@ from dataclasses import replace
 import sympy as sp
 
 from piezo_sym.expressions.calculus import mul
+from piezo_sym.expressions.exact_eval import all_hold
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Domain, simple_counterexample
-from piezo_sym.proofs.conditions import domain_conditions
+from piezo_sym.proofs.conditions import domain_conditions, in_words
 from piezo_sym.proofs.continuity import neighbour_questions
-from piezo_sym.proofs.domain import short_points
+from piezo_sym.proofs.domain import short_points, spec_points
 from piezo_sym.proofs.laws import branch_questions
 from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
@@ -66,7 +67,7 @@ def prove(
         values = {(row.id, row.element) for row in known} & {("welldef", obligation.element)}
         verdict, witness, reason = _unproved_premise(values, known) or (verdict, witness, reason)
     if verdict is Verdict.REFUTED and obligation.sign:
-        reason += _mending_condition(obligation.sign, obligation.questions, solver)
+        reason += _mending_condition(obligation.sign, obligation.questions, iphs, solver)
     if verdict is Verdict.REFUTED and obligation.id in DECLARED:
         reason += _domain_conditions(obligation, iphs, solver)
     if reason.endswith(GIVE):
@@ -227,7 +228,9 @@ def _of_derived(question: Question, found: Finding) -> str:
     )
 
 
-def _mending_condition(sign: SignOf, questions: tuple[Question, ...], solver: SolverLike) -> str:
+def _mending_condition(
+    sign: SignOf, questions: tuple[Question, ...], iphs: IPHS, solver: SolverLike
+) -> str:
     """Return the condition under which a refuted law is passive, as the end of a reason."""
 
     def shown(law: Expr, letter: str) -> bool:
@@ -236,7 +239,10 @@ def _mending_condition(sign: SignOf, questions: tuple[Question, ...], solver: So
         return _first_failure(branch_questions(law, question, letter), solver) is None
 
     condition = mending(sign.law, sign.letter, shown)
-    return f"; the condition '{condition}' in [domain] mends it" * bool(condition)
+    if condition is None:
+        return ""
+    broken = any(all_hold((condition,), point) is False for point in spec_points(iphs))
+    return in_words([condition_text(condition)], kept=not broken)
 
 
 def _domain_conditions(obligation: Obligation, iphs: IPHS, solver: SolverLike) -> str:

@@ -201,6 +201,11 @@ def test_of_conditions_that_the_values_break_that_is_said():
     (row,) = (row for row in unproved(assuming(text, '"x_0 > 0"')) if row.id == "welldef")
     said = "the condition 'q > 0' in [domain] would mend it, but the values of the spec do not"
     assert said in row.reason
+    worse = SPEC.replace("R = { value = 2.0", "R = { value = -2.0")
+    for text, value in ((SPEC, "it"), (worse, "it, but the values of the spec do not satisfy it")):
+        (row,) = (row for row in unproved(text.replace('"R >= 0"', "")) if row.id == "passive")
+        said = f"'R >= 0' in [domain] {'mends' if text == SPEC else 'would mend'} {value}"
+        assert row.reason.endswith(said)
 
 
 @pytest.mark.parametrize(
