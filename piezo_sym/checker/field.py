@@ -157,9 +157,8 @@ class Field:
 
         Such a factor must not cancel.
         """
-        need(ratio != ZERO, "a divisor is zero by its form")  # of zero, all degrees are -1
         plain = self._reduced(ratio.top) if self._places(ratio.top) else ratio.top
-        if not self._places(plain):
+        if ratio == ZERO or not self._places(plain):  # of zero, all degrees are -1
             return ONE / Ratio(plain, ratio.bottom)
         size, factors = ratio.top.factor()
         found = Ratio(ratio.bottom / size)

@@ -145,8 +145,7 @@ class _Audit:
         if claims or element.law or ("welldef", name) in self.stated:
             terms = [t for t in self.found.terms if any(("x", e.name) in symbols(t) for e in parts)]
             self._row("welldef", name, [*claims, *(c for t in terms for c in partial(t))])
-        joined = [tree for tree in trees if not (element.jumps and tree == element.law)]
-        if self._bent(joined):
+        if self._bent(joined := [t for t in trees if not (element.jumps and t == element.law)]):
             self._row("continuous", name, _continuous(joined))
         if element.law:
             self._row("passive", name, self._passive(element, z), [("welldef", name)])
