@@ -67,7 +67,7 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
         MODEL(lane) *l = b->lane + lane;
         if (IN(t->loose & none_of(m->loose), lane))
             l->to_round_off = TO_ROUND_OFF;
-        else if (l->to_round_off > 0)
+        else if (l->to_round_off > 0 && IN(t->steps, lane))
             --l->to_round_off;
     }
 #endif /* COSTATES */

@@ -96,7 +96,7 @@ typedef struct {
 } MODEL(batch);
 
 enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
-/* So many steps are solved to round-off after one whose residuals could not become heat. */
+/* So many steps, with their samples, are solved to round-off after one whose residuals cannot be heat. */
 enum { TO_ROUND_OFF = 20 };
 /*
  * A run ends after so many steps in a row that are at most CRAWL times the time at its end: at the edge
