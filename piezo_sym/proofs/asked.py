@@ -203,14 +203,19 @@ def _tied(letter: str, domain: Domain) -> bool:
 def moved_counterexample(
     claim: Cmp, letter: str, domain: Domain, own: Numbers | None = None
 ) -> Numbers | None:
-    """Return numbers that break a claim: the domain's simplest, or `own`, one parameter moved."""
+    """Return numbers that break a claim: the domain's simplest, or `own`, one parameter moved.
+
+    Beside `own`, the letter also has the sizes of parameters: tanh(v/v_0) bends near v_0 alone.
+    """
     near = domain.related(names(claim))
     point = {n: own[n] for n in near & own.keys()} if own else domain.point(NEVER, names(claim))
     if not point or not point.keys() >= {*names(claim)} - {letter} or _tied(letter, domain):
         return None
-    for name, (factor, step) in product(names(claim), MOVES):
-        for value in TRIED[:FEW] if name != letter else ():
-            numbers = {**point, name: point[name] * factor + step, letter: value}
+    others = [name for name in names(claim) if name != letter]
+    sizes = dict.fromkeys((Fraction(1), *(abs(point[name]) for name in others if own)))
+    for name, (factor, step), size in product(others, MOVES, filter(None, sizes)):
+        for value in TRIED[:FEW]:
+            numbers = {**point, name: point[name] * factor + step, letter: value * size}
             if domain.breaks(claim, numbers):
                 return numbers
     return None

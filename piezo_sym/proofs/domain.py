@@ -6,6 +6,7 @@ are not zero, and the reason to leave all rows open if the domain has no known p
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from decimal import Context
 from fractions import Fraction
 from types import MappingProxyType
 
@@ -21,8 +22,8 @@ from piezo_sym.proofs.obligations import NEVER, Obligation, Question
 from piezo_sym.proofs.solvers import SolverLike
 from piezo_sym.spec.elements.ports import Body, Coupling
 
-#: The largest denominator of short numbers.
-SHORT = 10**6
+#: To six significant digits, as the numbers that a witness shows.
+ROUNDED = Context(prec=6)
 NOTHING: Mapping[str, Fraction] = MappingProxyType({})
 #: Of a longer divisor only the beginning is shown.
 MOST_TEXT = 60
@@ -100,10 +101,14 @@ def _all_inside(assumptions: Assumptions, points: tuple[Mapping[str, Value], ...
     return bool(points) and all(all_hold(conditions, point) for point in points)
 
 
-def short_points(iphs: IPHS) -> tuple[dict[str, Fraction], ...]:
-    """Return what are plain numbers of the spec's own values, with few digits."""
+def rounded_points(iphs: IPHS) -> tuple[dict[str, Fraction], ...]:
+    """Return the spec's own values in each lane, rounded; without those that are not rational."""
     return tuple(
-        {n: v.limit_denominator(SHORT) for n, v in point.items() if isinstance(v, Fraction)}
+        {
+            name: Fraction(ROUNDED.divide(value.numerator, value.denominator))
+            for name, value in point.items()
+            if isinstance(value, Fraction)
+        }
         for point in spec_points(iphs)
     )
 

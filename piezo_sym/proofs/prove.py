@@ -17,7 +17,7 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import Domain, simple_counterexample
 from piezo_sym.proofs.conditions import domain_conditions, in_words
 from piezo_sym.proofs.continuity import neighbour_questions
-from piezo_sym.proofs.domain import short_points, spec_points
+from piezo_sym.proofs.domain import rounded_points, spec_points
 from piezo_sym.proofs.laws import branch_questions
 from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
@@ -132,7 +132,7 @@ def _by_intervals(
 ) -> tuple[Finding | None, tuple[Case, ...]]:
     """Return the certificate of a law that `sign_analysis` proves passive, else the finding."""
     question = obligation.questions[0]
-    found = whole_sign(sign, question.order, solver, short_points(iphs))
+    found = whole_sign(sign, question.order, solver, rounded_points(iphs))
     if found is None:
         return still_open, ()
     if found.verdict is Verdict.PROVED:

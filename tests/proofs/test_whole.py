@@ -2,6 +2,7 @@
 
 import json
 import random
+import re
 from fractions import Fraction
 from itertools import islice
 from math import tanh
@@ -240,11 +241,16 @@ force = "F_c*(tanh(v/v_0) - s*tanh(v/v_s))"
 
 
 @pytest.mark.parametrize(("limit", "refuted"), [("v_s < v_0", True), ("v_s >= v_0", False)])
-def test_numbers_near_those_of_the_spec_refute_a_law_that_is_zero_for_simple_ones(limit, refuted):
-    """The simplest numbers of the domain have F_c = 0 and s = 0."""
-    text = FRICTION.replace("LIMIT", limit).replace(
-        "value = 0.2", "value = 0.2" if refuted else "value = 0.4"
-    )
+@pytest.mark.parametrize("small", ["", "0.5", "0.3 0.2"])
+def test_numbers_near_those_of_the_spec_refute_a_law_that_is_zero_for_simple_ones(
+    limit, refuted, small
+):
+    """The simplest numbers of the domain have F_c = 0 and s = 0; `small` ones are times 1e-7."""
+    text = FRICTION
+    for value in small.split():
+        text = text.replace(f"value = {value},", f"value = {value}e-7,")
+    text = text if refuted else re.sub(r"(v_s = { value = )0\.2", r"\g<1>0.4", text)
+    text = text.replace("LIMIT", limit)
     (row,) = (row for row in decide(derive(load_text(text))).rows if row.id == "passive")
     assert (row.verdict is Verdict.REFUTED) == refuted
     at = {name: float(Fraction(value)) for name, value in (row.witness or {}).items()}
