@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias, TypeVa
 
 from piezo_sym.analysis import branches, steady
 from piezo_sym.analysis import operating_point as rest
-from piezo_sym.errors import UsageError, listing, quote
+from piezo_sym.errors import UnknownNameError
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
 from piezo_sym.run import simulate as run
@@ -43,8 +43,9 @@ def of_spec(
         known_keys(given, options, run.__name__)
         try:
             return run(module_of(model, stages(given)), *args, **given)
-        except UsageError as error:
-            _say_joined(error, model, given.get("initial"))
+        except UnknownNameError as error:
+            if error.where.endswith(".initial"):
+                _say_joined(error, model)
             raise
 
     wrapper: Any = update_wrapper(call, run, updated=())
@@ -58,20 +59,15 @@ def of_spec(
     return call  # type: ignore[return-value]  # the model may be given by name, too
 
 
-def _say_joined(error: UsageError, model: Spec, initial: object) -> None:
+def _say_joined(error: UnknownNameError, model: Spec) -> None:
     """Say of an initial state that is unknown, as its store is joined, which state there is."""
-    if not isinstance(initial, Mapping) or not error.where.endswith(".initial"):
-        return
     from piezo_sym.derivation import derive
     from piezo_sym.spec.load import load
 
     iphs = derive(load(model) if isinstance(model, str | Path) else model)
     for joint in iphs.junction.joints:
-        kept = listing(quote(member.store.state) for member in joint.kept)
-        for name in (member.store.state for member in joint.followers):
-            if error.what == f"unknown name {quote(name)}":
-                sums = "is the sum of theirs" if len(joint.kept) == 1 else "are sums of theirs"
-                error.remedy = f"it is joined into {kept}, which {sums}: see piezo-sym show"
+        if error.name in {member.store.state for member in joint.followers}:
+            error.remedy = f"it is joined: {', '.join(joint.state_texts())}"
 
 
 operating_point = of_spec(rest.operating_point)

@@ -70,9 +70,15 @@ class NetworkError(PiezoError):
     """A network whose junction laws have no, or more than one, solution."""
 
 
-@final
 class UsageError(PiezoError):
     """A call or a command with wrong arguments."""
+
+
+@final
+class UnknownNameError(UsageError):
+    """A name that a call gives a value, and that there is not."""
+
+    name: str = ""
 
 
 @final

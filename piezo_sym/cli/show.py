@@ -135,16 +135,10 @@ def _equations(iphs: IPHS) -> Iterator[str]:
 
 def _joined(iphs: IPHS) -> Iterator[str]:
     """Yield the joined stores: each state, and the co-state and energy of each store in it."""
-    from piezo_sym.expressions.calculus import add, mul
     from piezo_sym.expressions.text import spell
-    from piezo_sym.expressions.tree import Sym
 
     for joint in iphs.junction.joints:
-        for n, kept in enumerate(joint.kept):
-            terms = (
-                mul(m.shares[n], Sym(f"({m.store.state} of {m.element})")) for m in joint.members
-            )
-            yield f"\nJoined: {kept.store.state} = {spell(add(*terms))}"
+        yield from (f"\nJoined: {text}" for text in joint.state_texts())
         for m in joint.members:
             law = f"{m.store.costate} = {spell(joint.costate(m))}, " if m in joint.followers else ""
             yield f"  {m.element}: {law}energy {spell(m.energy)}"

@@ -39,8 +39,8 @@ DURATION = "Length of the run [s], or with a unit: 20ms."
 STEP = "A fixed step [s] instead of --rtol."
 OUTPUTS = "Quantities of elements: all, or spring,damper.heat,..."
 CONTINUE = "Go on from the end of this run (.nc or .zarr)."
-INITIAL = """STATE=NUMBER or T_<body>=KELVIN at t = 0; units as for --set; joined stores have one
-state, the sum of theirs: see show; repeat."""
+INITIAL = """STATE=NUMBER or T_<body>=KELVIN at t = 0; units as for --set; of joined
+stores one state, see show; repeat."""
 SIGNALS = "NAME=NUMBER, NAME=sine(100V,50Hz) or NAME=@FILE.csv; units as for --set; repeat."
 SET = "PARAMETER=NUMBER in SI, whatever unit the spec has, or with its unit: L=1.2mH; repeat."
 

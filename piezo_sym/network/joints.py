@@ -18,6 +18,7 @@ from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.errors import NetworkError, SpecError, listing, quote
 from piezo_sym.expressions.calculus import add, div, inserted, mul, neg, power
 from piezo_sym.expressions.exact_eval import evaluate
+from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ONE, ZERO, Add, Div, Expr, Mul, Neg, Num, Sym, names
 from piezo_sym.network.inverse import constant_slope
 from piezo_sym.network.kirchhoff import Laws
@@ -65,6 +66,14 @@ class Joint:
     def members(self) -> tuple[Member, ...]:
         """The kept stores, then the followers."""
         return (*self.kept, *self.followers)
+
+    def state_texts(self) -> Iterator[str]:
+        """Yield each kept state as the sum that it stands for: p = (p of m1) + (p_2 of m2)/n."""
+        for n, kept in enumerate(self.kept):
+            terms = (
+                mul(m.shares[n], Sym(f"({m.store.state} of {m.element})")) for m in self.members
+            )
+            yield f"{kept.store.state} = {spell(add(*terms))}"
 
     def costate(self, member: Member) -> Expr:
         """Return the co-state of a member in terms of those of the kept stores."""

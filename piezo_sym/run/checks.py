@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import PiezoError, UsageError, nearest, quote
+from piezo_sym.errors import PiezoError, UnknownNameError, UsageError, nearest, quote
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
@@ -118,10 +118,11 @@ def known_keys(
     names = tuple(known)
     for name in given:
         if name not in names:
-            what = f"unknown name {quote(name)}"
             place = (others or {}).get(name)
             remedy = f"give it in '{place}'" if place else nearest(str(name), names)
-            raise UsageError(what, where, remedy=remedy)
+            unknown = UnknownNameError(f"unknown name {quote(name)}", where, remedy=remedy)
+            unknown.name = str(name)
+            raise unknown
     return dict(given)
 
 

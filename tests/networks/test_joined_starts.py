@@ -75,13 +75,23 @@ def test_a_joined_state_takes_a_condition():
     verify(iphs).raise_if_not_proved()
 
 
-def test_a_run_says_of_a_joined_state_which_one_there_is():
-    model = parse(HEAD.replace("START", "") + SPRINGS)
+@pytest.mark.parametrize(
+    ("elements", "state", "joined"),
+    [
+        (SPRINGS, "q_s2", "q = (q of s1) - (q_s2 of s2)"),
+        (LEVER, "p_m2", "p = (p of m1) + (p_m2 of m2)/n"),
+    ],
+)
+def test_a_run_says_of_a_joined_state_which_one_there_is(elements, state, joined):
+    model = parse(HEAD.replace("START", "") + elements)
     with pytest.raises(PiezoError) as caught:
-        simulate(model, duration=1e-3, initial={"q_s2": 1e-3})
+        simulate(model, duration=1e-3, initial={state: 1e-3})
     assert str(caught.value) == (
-        "simulate.initial: unknown name 'q_s2'; it is joined into 'q', which is the sum of theirs: "
-        "see piezo-sym show"
+        f"simulate.initial: unknown name '{state}'; it is joined: {joined}"
     )
+
+
+def test_a_run_says_of_another_unknown_state_which_ones_there_are():
+    model = parse(HEAD.replace("START", "") + SPRINGS)
     with pytest.raises(PiezoError, match="unknown name 'q_s'; known: S, q"):
         simulate(model, duration=1e-3, initial={"q_s": 1e-3})

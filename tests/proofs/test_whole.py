@@ -247,8 +247,8 @@ def test_numbers_near_those_of_the_spec_refute_a_law_that_is_zero_for_simple_one
 ):
     """The simplest numbers of the domain have F_c = 0 and s = 0; `small` ones are times 1e-7."""
     text = FRICTION
-    for value in small.split():
-        text = text.replace(f"value = {value},", f"value = {value}e-7,")
+    for short in small.split():
+        text = text.replace(f"value = {short},", f"value = {short}e-7,")
     text = text if refuted else re.sub(r"(v_s = { value = )0\.2", r"\g<1>0.4", text)
     text = text.replace("LIMIT", limit)
     (row,) = (row for row in decide(derive(load_text(text))).rows if row.id == "passive")
