@@ -42,11 +42,13 @@ def _temperature_questions(law: Expr, state: str, assumptions: Assumptions) -> I
     Continuity is asked, too: a slope does not show a jump downward.
     """
     slope = derivative(law, state)
+    warm = assumptions.question("T > 0", Cmp(">", law, ZERO))
+    rising = assumptions.question("dT/dS > 0", Cmp(">", slope, ZERO))
     found = [
         *value_questions(law, assumptions),
         *value_questions(slope, assumptions),
-        *branch_questions(law, assumptions.question("T > 0", Cmp(">", law, ZERO))),
-        *branch_questions(slope, assumptions.question("dT/dS > 0", Cmp(">", slope, ZERO))),
+        *branch_questions(law, replace(warm, rising="energy")),
+        *branch_questions(slope, replace(rising, rising="temperature")),
     ]
     asked = {(question.where, question.claim): question for question in reversed(found)}
     yield from reversed(asked.values())

@@ -6,23 +6,25 @@ reason.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import reduce
 
+from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
-from piezo_sym.expressions.tree import ZERO, Cmp, Expr, names, replaced
+from piezo_sym.expressions.tidying import tidied
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Pow, names, replaced
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.domain import spec_points
-from piezo_sym.proofs.mending import at_root, without_factors
+from piezo_sym.proofs.mending import sign_factors
 from piezo_sym.proofs.obligations import NEVER, Question
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.tables import condition_text
 
 #: Of a temperature whose law is longer, a condition has the name.
 MOST_TEXT = 24
-#: What a temperature claims, in words, and what makes it true.
-RISING = {
-    "T > 0": ("T = dU/dS", "let the energy rise with S"),
-    "dT/dS > 0": ("dT/dS", "let the temperature rise with S"),
-}
+#: Functions that are positive wherever they have a value.
+ABOVE = frozenset({"exp", "cosh"})
+#: The slopes by S of what has to rise with it.
+SLOPES = {"energy": "T = dU/dS", "temperature": "dT/dS"}
 
 
 def domain_conditions(
@@ -53,8 +55,7 @@ def domain_conditions(
         return not any(fails(replace(q, where=(*more, *q.where))) for q in questions)
 
     found = _conditions(broken, iphs, questions[0], fails)
-    asked = Question("", questions[0].order, (*found, *questions[0].where), NEVER, NEVER)
-    if not all(map(names, found)) or not fails(asked):
+    if not all(map(names, found)) or _no_point_satisfies(found, questions[0], fails):
         return _falling(failed, points)
     if not mended(found):
         return ""
@@ -64,6 +65,14 @@ def domain_conditions(
         if rest and mended(rest):
             del found[claim]
     return in_words([*found.values()], kept=all(_kept(c, points) for c in found))
+
+
+def _no_point_satisfies(
+    conditions: Iterable[Cmp], question: Question, fails: Callable[[Question], bool]
+) -> bool:
+    """Return whether conditions contradict the domain of a question: then `NEVER` follows."""
+    where = (*conditions, *question.where)
+    return not fails(Question("", question.order, where, NEVER, NEVER))
 
 
 def _conditions(
@@ -78,7 +87,7 @@ def _conditions(
         return not fails(Question("", question.order, (*found, *question.where), claim, claim))
 
     for claim in sorted(broken, key=lambda claim: len(names(claim))):
-        bare = at_root(without_factors(claim, positive))
+        bare = _at_root(_without_factors(claim, positive))
         ops = (">", "<") if bare.op == "!=" else (bare.op,)
         ways = [Cmp(op, bare.left, bare.right) for op in ops]
         way = next((way for way in ways if _kept(way, points)), ways[0])
@@ -86,6 +95,25 @@ def _conditions(
         text = condition_text(way)
         found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
     return found
+
+
+def _without_factors(claim: Cmp, positive: Callable[[Expr], bool]) -> Cmp:
+    """Return a claim on the sign of a product as one on those factors that are not positive."""
+    if claim.op not in {">", ">=", "!="} or claim.right != ZERO:
+        return claim
+    factors = (
+        f for f in sign_factors(claim.left) if not (isinstance(f, Call) and f.function in ABOVE)
+    )
+    kept = [f for f in factors if not positive(f)] or [claim.left]
+    return Cmp(claim.op, tidied(reduce(mul, kept)), ZERO)
+
+
+def _at_root(claim: Cmp) -> Cmp:
+    """Return x**2 > 0, or x**2 != 0, as x != 0, and other claims as they are."""
+    match claim:
+        case Cmp(">" | "!=", Pow(base, exponent), right) if right == ZERO and exponent % 2 == 0:
+            return Cmp("!=", base, ZERO)
+    return claim
 
 
 def _kept(condition: Cmp, points: Iterable[Mapping[str, Value]]) -> bool:
@@ -96,13 +124,12 @@ def _kept(condition: Cmp, points: Iterable[Mapping[str, Value]]) -> bool:
 def _falling(failed: Iterable[Question], points: Iterable[Mapping[str, Value]]) -> str:
     """Return that a temperature, or its slope, is negative for the values of the spec, or ''."""
     for question in failed:
-        label = question.label.partition(" where ")[0]
-        for point in points if label in RISING else ():
+        for point in points if question.rising else ():
             if all_hold((Cmp("<=", question.original.left, ZERO),), point):
-                value, (what, remedy) = value_of(question.original.left, point), RISING[label]
+                slope, value = SLOPES[question.rising], value_of(question.original.left, point)
                 return (
-                    f"; {what} has to be positive, and is {float(value):g} for the values of the "
-                    f"spec: {remedy}, as exp(S/c) does"
+                    f"; {slope} has to be positive, and is {float(value):g} for the values of the "
+                    f"spec: let the {question.rising} rise with S, as exp(S/c) does"
                 )
     return ""
 

@@ -65,6 +65,7 @@ class Question:
     split: bool = True  # whether the claim is asked on each of its branches
     witness: bool = False  # whether numbers that break the claim are wanted
     derived: bool = False  # whether it is about an integrated energy; breaking that refutes no spec
+    rising: str = ""  # what has to rise with S, energy or temperature, if the claim says that
 
     def __hash__(self) -> int:
         """Return a hash without the assumptions, which questions of a model share."""
@@ -135,7 +136,7 @@ class Question:
     def covered(self, found: tuple[Branch, ...]) -> Question:
         """Return the question whether branches cover all points."""
         label, claim = f"{self.label}: the branches cover all points", cover(found)
-        plain = replace(self, meeting=None, law=None, split=False)
+        plain = replace(self, meeting=None, law=None, split=False, rising="")
         return replace(plain, label=label, claim=claim, original=claim)
 
     def _about(self) -> Iterator[str]:

@@ -5,7 +5,7 @@ zero, every question answered with `unsat`, and every row it rests on PROVED.  R
 witness that was evaluated exactly in the law itself.  All else is OPEN, with the reason.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 
 import sympy as sp
@@ -43,8 +43,6 @@ MOST_OPEN = 4
 #: No condition that mends an obligation of more questions is looked for: each is asked again.
 MOST_MENDED = 500
 
-Decided = tuple[Verdict, Mapping[str, str] | None, str, str, tuple[Case, ...]]
-
 
 def prove(
     obligation: Obligation, iphs: IPHS, before: Iterable[Row] = (), solver: SolverLike | None = None
@@ -59,27 +57,20 @@ def prove(
     solver : for its questions; by default z3, and cvc5 where z3 does not know.
     """
     solver, known = solver or opinions(), tuple(before)
-    verdict, witness, reason, method, certificate = _decide(obligation, iphs, known, solver)
-    if verdict is Verdict.REFUTED and obligation.loose in (witness or {}):
-        verdict, witness, reason = Verdict.OPEN, None, LOOSE
+    found, method, certificate = _decide(obligation, iphs, known, solver)
+    if found.verdict is Verdict.REFUTED and obligation.loose in (found.witness or {}):
+        found = Finding(Verdict.OPEN, None, LOOSE)
     # a jump is shown by values beside the edge, which must exist
-    if verdict is Verdict.REFUTED and obligation.id == "continuous":
+    if found.verdict is Verdict.REFUTED and obligation.id == "continuous":
         values = {(row.id, row.element) for row in known} & {("welldef", obligation.element)}
-        verdict, witness, reason = _unproved_premise(values, known) or (verdict, witness, reason)
-    if verdict is Verdict.REFUTED and obligation.sign:
-        reason += _mending_condition(obligation.sign, obligation.questions, iphs, solver)
-    if verdict is Verdict.REFUTED and obligation.id in DECLARED:
-        reason += _domain_conditions(obligation, iphs, solver)
-    if reason.endswith(GIVE):
-        mends = _domain_conditions(obligation, iphs, solver)
-        reason = reason.removesuffix(f"; {GIVE}") + mends if mends else reason
+        found = _unproved_premise(values, known) or found
     return Row(
         obligation.id,
         obligation.element,
         obligation.statement,
-        verdict,
-        witness,
-        reason,
+        found.verdict,
+        found.witness,
+        found.reason + _mended_by(found, obligation, iphs, solver),
         obligation.required,
         method,
         certificate=tuple(case.as_data() for case in certificate),
@@ -88,30 +79,29 @@ def prove(
 
 def _decide(
     obligation: Obligation, iphs: IPHS, before: tuple[Row, ...], solver: SolverLike
-) -> Decided:
-    """Return the verdict with its witness and reason, the method, and the certificate."""
+) -> tuple[Finding, str, tuple[Case, ...]]:
+    """Return the finding, the method, and the certificate."""
     if obligation.open_because:
-        return Verdict.OPEN, None, obligation.open_because, "branches", ()
+        return Finding(Verdict.OPEN, None, obligation.open_because), "branches", ()
     for residual in obligation.residuals:
         if residual.empty and all(solver.ask(q.query).result == "unsat" for q in residual.empty):
             continue
         failed = _residual_failure(residual, iphs)
         if failed and residual.derived:
-            return Verdict.OPEN, None, f"{failed[2]}; {GIVE}", "algebra", ()
+            return Finding(Verdict.OPEN, None, failed.reason, GIVE), "algebra", ()
         if failed:
-            return *failed, "algebra", ()
+            return failed, "algebra", ()
     method, certificate = "branches" if obligation.questions else "algebra", tuple[Case, ...]()
     failed = _first_failure(obligation.questions, solver)
-    if failed and failed[0] is Verdict.OPEN and obligation.sign and obligation.sign.letter:
+    if failed and failed.verdict is Verdict.OPEN and obligation.sign and obligation.sign.letter:
         method = "intervals"
         failed, certificate = _by_intervals(obligation, iphs, obligation.sign, failed, solver)
-    if failed and failed[0] is Verdict.OPEN and obligation.letter:
+    if failed and failed.verdict is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
-    if failed and failed[0] is Verdict.OPEN:
+    if failed and failed.verdict is Verdict.OPEN:
         failed = beside_own_values(obligation.questions, iphs, solver) or failed
-    proved: Finding = (Verdict.PROVED, None, "")
     failed = failed or _unproved_premise(obligation.rests_on, before)
-    return *(failed or proved), method, () if failed else certificate
+    return failed or Finding(Verdict.PROVED), method, () if failed else certificate
 
 
 def _first_failure(questions: Iterable[Question], solver: SolverLike) -> Finding | None:
@@ -119,7 +109,7 @@ def _first_failure(questions: Iterable[Question], solver: SolverLike) -> Finding
     left: list[Finding] = []
     for question in neighbour_questions(tuple(questions), solver):
         found = _failure(question, solver)
-        if found and found[0] is Verdict.REFUTED:
+        if found and found.verdict is Verdict.REFUTED:
             return found
         left += [found] if found else []
         if len(left) == MOST_OPEN:
@@ -139,7 +129,7 @@ def _by_intervals(
         return None, found.certificate
     if found.numbers is not None:
         return refutation(question, found.numbers), ()
-    return (Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
+    return Finding(Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
 
 
 def _by_numbers(obligation: Obligation, solver: SolverLike) -> Finding | None:
@@ -159,10 +149,11 @@ def _unproved_premise(
         name = f"{premise[0]} of {premise[1]}" if premise[1] else premise[0]
         verdicts = [row.verdict for row in before if (row.id, row.element) == premise]
         if not verdicts:
-            return Verdict.OPEN, None, f"it rests on {name}, which was not looked at"
+            return Finding(Verdict.OPEN, None, f"it rests on {name}, which was not looked at")
         for verdict in verdicts:
             if verdict is not Verdict.PROVED:
-                return Verdict.OPEN, None, f"it rests on {name}, which is {verdict.value}"
+                reason = f"it rests on {name}, which is {verdict.value}"
+                return Finding(Verdict.OPEN, None, reason)
     return None
 
 
@@ -174,9 +165,9 @@ def _residual_failure(residual: Residual, iphs: IPHS) -> Finding | None:
     witness = _nonzero_point(iphs, value)
     if witness is None:
         reason = f"{residual.place} = {value} was not shown to be zero"
-        return Verdict.OPEN, None, reason
+        return Finding(Verdict.OPEN, None, reason)
     numbers, at = witness
-    return Verdict.REFUTED, numbers, f"{residual.place} = {value}, which is {at}"
+    return Finding(Verdict.REFUTED, numbers, f"{residual.place} = {value}, which is {at}")
 
 
 def _nonzero_point(iphs: IPHS, expr: sp.Expr) -> tuple[dict[str, str], sp.Expr] | None:
@@ -209,23 +200,33 @@ def _failure(question: Question, solver: SolverLike) -> Finding | None:
             return None
         if answer.result == "sat":
             found = checked_model(question, answer, shown)
-            return (Verdict.OPEN, None, _of_derived(question, found)) if question.derived else found
-    return Verdict.OPEN, None, f"{question.label}: {answer.reason}"
+            return _of_derived(question, found) if question.derived else found
+    return Finding(Verdict.OPEN, None, f"{question.label}: {answer.reason}")
 
 
-def _of_derived(question: Question, found: Finding) -> str:
+def _of_derived(question: Question, found: Finding) -> Finding:
     """Return why a question about an integrated energy is open, and what to write."""
-    _, witness, reason = found
-    if witness is None or question.law is None or question.branch:
-        return f"{reason}; {GIVE}"
+    if found.witness is None or question.law is None or question.branch:
+        return Finding(Verdict.OPEN, None, found.reason, GIVE)
     claim = question.original
     ops = (">", "<") if claim.op == "!=" else (claim.op,)  # [domain] takes no !=
     bounds = " or ".join(f"'{condition_text(Cmp(op, claim.left, claim.right))}'" for op in ops)
-    at = ", ".join(f"{name} = {value}" for name, value in witness.items())
-    return (
+    at = ", ".join(f"{name} = {value}" for name, value in found.witness.items())
+    reason = (
         f"the law's energy that was found has no value at {at}: add {bounds} to [domain], or give "
         f"the law's energy, energy = '...'"
     )
+    return Finding(Verdict.OPEN, None, reason)
+
+
+def _mended_by(found: Finding, obligation: Obligation, iphs: IPHS, solver: SolverLike) -> str:
+    """Return what mends a row, as the end of its reason: a condition, else the finding's remedy."""
+    refuted, conditions = found.verdict is Verdict.REFUTED, ""
+    if refuted and obligation.sign:
+        conditions = _mending_condition(obligation.sign, obligation.questions, iphs, solver)
+    if found.remedy or (refuted and obligation.id in DECLARED):
+        conditions += _domain_conditions(obligation, iphs, solver)
+    return conditions or (f"; {found.remedy}" if found.remedy else "")
 
 
 def _mending_condition(

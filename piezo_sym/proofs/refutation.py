@@ -6,6 +6,7 @@ Input: a `Question`, and a solver's model.  Output: a finding: REFUTED with the 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from typing import NamedTuple, final
 
 from piezo_sym.expressions.exact_eval import TooCloseError, Value, all_hold, value_of
 from piezo_sym.expressions.text import spell
@@ -19,7 +20,15 @@ from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.solvers import Answer, SolverLike
 from piezo_sym.spec.tables import condition_text
 
-Finding = tuple[Verdict, Mapping[str, str] | None, str]
+
+@final
+class Finding(NamedTuple):
+    """A verdict on a claim, with its witness and reason, and a remedy if it is known already."""
+
+    verdict: Verdict
+    witness: Mapping[str, str] | None = None
+    reason: str = ""
+    remedy: str = ""
 
 
 def beside_own_values(
@@ -62,7 +71,7 @@ def checked_model(question: Question, answer: Answer, shown: tuple[str, ...]) ->
     values = {name: value for name, value in answer.model.items() if name in question.order}
     if not (all_hold(question.where, values) and _is_broken(question, values)):
         reason = f"{question.label}: {_why_undecided(question, values)}"
-        return Verdict.OPEN, None, reason
+        return Finding(Verdict.OPEN, None, reason)
     return refutation(question, {name: value for name, value in values.items() if name in shown})
 
 
@@ -110,7 +119,8 @@ def refutation(question: Question, values: Mapping[str, Value]) -> Finding:
         reason = f"{question.label} is false: {_value(left, values)} and {_value(right, values)}"
     if question.meeting and question.original.op == "=":
         reason += JUMPS if question.meeting.may_jump else MEETS
-    return Verdict.REFUTED, {name: str(value) for name, value in values.items()}, reason
+    witness = {name: str(value) for name, value in values.items()}
+    return Finding(Verdict.REFUTED, witness, reason)
 
 
 def _value(law: Expr, values: Mapping[str, Value]) -> str:
