@@ -155,10 +155,16 @@ STICKING = "friction that sticks is a 'stop', or F_c*tanh(v/v_0) with a small v_
 SHORT = 3
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """Return "did you mean 'x'?" with the known name nearest to `word`, or the known names."""
+def similar(word: str, known: Iterable[str]) -> str:
+    """Return the known name that `word` may be meant for, or ''."""
     names, short = list(known), word[:MAX_QUOTE]
     match = [name for name in names if name.lower() == short.lower()]
     like = [name for name in names if len(short) > SHORT or name[:1] == short[:1]]
-    match = match or get_close_matches(short, like, n=1, cutoff=0.6)
-    return f"did you mean '{match[0]}'?" if match else f"known: {listing(names, MOST_KNOWN)}"
+    return next(iter(match or get_close_matches(short, like, n=1, cutoff=0.6)), "")
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return "did you mean 'x'?" with the known name nearest to `word`, or the known names."""
+    names = list(known)
+    match = similar(word, names)
+    return f"did you mean '{match}'?" if match else f"known: {listing(names, MOST_KNOWN)}"

@@ -5,13 +5,13 @@ dotted path, what was expected there and, for unknown words, the nearest known o
 lines of the same kind, its notes, as there are other faults.
 """
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, get_args
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from piezo_sym.errors import SpecError, listing, nearest, quote
+from piezo_sym.errors import SpecError, listing, nearest, quote, similar
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.fields import Tables
 
@@ -42,8 +42,9 @@ def all_problems(error: ValidationError) -> SpecError:
     details = error.errors(include_url=False)
     place = {kind: n for n, kind in enumerate(FIRST)}
     details.sort(key=lambda detail: place.get(detail["type"], len(FIRST)))
-    meant = {(*d["loc"][:-1], _problem(d).remedy) for d in details if d["type"] == FIRST[0]}
-    found = (_problem(d) for d in details if not _explained(d, meant))
+    # a key is missing only because it stands there under a misspelled name
+    meant = {(*d["loc"][:-1], _meant_key(d)) for d in details if d["type"] == FIRST[0]}
+    found = (_problem(d) for d in details if d["type"] != "missing" or d["loc"] not in meant)
     problem, *others = {str(fault): fault for fault in found}.values()
     for other in others[: MOST_FAULTS - 1]:
         problem.add_note(str(other))
@@ -52,13 +53,12 @@ def all_problems(error: ValidationError) -> SpecError:
     return problem
 
 
-def _explained(detail: ErrorDetails, meant: Collection[tuple[int | str, ...]]) -> bool:
-    """Return whether a key is missing only because it stands there under a misspelled name."""
-    *table, key = detail["loc"]
-    words = f"did you mean '{key}'?"
-    return detail["type"] == "missing" and any(
-        (*table, remedy) in meant for remedy in (words, f"{words} {NODES.get(str(key))}")
-    )
+def _meant_key(detail: ErrorDetails) -> str:
+    """Return the known key that an unknown one may be meant for, or ''."""
+    place = [str(part) for part in detail["loc"]]
+    known, key = _known(place), place[-1]
+    other = next((node for node in NODES if node in known and key in NODES), "")
+    return other or similar(key, known)
 
 
 def _problem(detail: ErrorDetails) -> SpecError:
@@ -70,9 +70,9 @@ def _problem(detail: ErrorDetails) -> SpecError:
     value = detail.get("input")
     match detail["type"]:
         case "extra_forbidden":
-            other = next((key for key in NODES if key in known and place[-1] in NODES), "")
-            remedy = f"did you mean '{other}'? {NODES[other]}" if other else ""
-            remedy = remedy or nearest(place[-1], known)
+            remedy, meant = nearest(place[-1], known), _meant_key(detail)
+            if place[-1] in NODES and meant in NODES:
+                remedy = f"did you mean '{meant}'? {NODES[meant]}"
             return SpecError(f"unknown key {quote(place[-1])}", where, remedy=remedy)
         case "missing" if isinstance(detail["loc"][-1], int):
             entries = "1 entry is given" if len(value) == 1 else "no entry is given"

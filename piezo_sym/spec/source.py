@@ -7,6 +7,7 @@ spec's types, so that a run can compare a module with its spec at little cost.
 import os
 import re
 import tomllib
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from piezo_sym.spec.names import NAME
 MAX_BYTES = 500_000
 MAX_NESTING = 20
 MAX_DOTS = 8
+MOST_LINES = 20  # of a value whose key is looked for
 QUOTED = re.compile(
     r"'{3}.*?'{3}"
     r'|"{3}(?:\\.|[^\\])*?"{3}'
@@ -48,7 +50,7 @@ def find(spec: str | Path) -> Path:
     if path.suffix != ".toml" and NAME.fullmatch(text) and not os.path.exists(path):
         remedy = f"{nearest(text, shipped())}; or give the path of a .toml file"
         beside = os.path.exists(f"{text}.toml")
-        remedy = f"to take the file there, write {text}.toml" if beside else remedy
+        remedy = f"to use the file {text}.toml, write its ending" if beside else remedy
         raise FileError(f"no shipped spec is called {quote(text)}", remedy=remedy)
     return path
 
@@ -121,19 +123,26 @@ def data(text: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         if twice := _given_twice(text, str(error)):
-            raise SpecError(twice, remedy="rename or leave out one of the two") from None
+            raise SpecError(twice, remedy="rename one of the two, or leave it out") from None
         what = f"is not TOML: {str(error)[:200]}"
         raise SpecError(what, remedy="mend the syntax there") from None
 
 
 def _given_twice(text: str, fault: str) -> str:
-    """Return which key a table has twice, where that is the fault of a TOML text, or ''."""
-    if not fault.startswith("Cannot overwrite a value"):
+    """Return which table, or key of a table, is there twice, if that is the fault of a text."""
+    if not fault.startswith(("Cannot overwrite a value", "Cannot declare")):
         return ""
     lines, at = text.split("\n"), re.search(r"at line (\d+)", fault)
-    number = int(at[1]) if at else len(text.rstrip("\n").split("\n"))
-    key = re.match(r"\s*([\w.-]+)\s*=", lines[number - 1])
-    return f"key {quote(key[1])} is in its table twice (line {number})" if key else ""
+    last = int(at[1]) if at else len(text.rstrip("\n").split("\n"))
+    for number in range(last, max(last - MOST_LINES, 0), -1):
+        with suppress(tomllib.TOMLDecodeError):
+            tomllib.loads("\n".join(lines[: number - 1]))
+            # what is before this line is TOML, so that the second of the two begins here
+            if table := re.match(r"\s*(\[[^\]]*\]+)", lines[number - 1]):
+                return f"table {quote(table[1])} is given twice (line {number})"
+            key = lines[number - 1].partition("=")[0].strip()
+            return f"key {quote(key)} is in its table twice (line {number})"
+    return f"a key is in its table twice (its value ends in line {last})"
 
 
 def _check_nesting(text: str) -> None:

@@ -102,7 +102,7 @@ SHORT = ["simulate", "oscillator", "--duration", "1"]
     [
         (["kinds", "end_stop"], 'write a spring with force = "k_c*max(q - gap, 0)"'),
         (["simulate", "oscillator"], "see `piezo-sym simulate --help`"),
-        (["simulate", "mine", "--duration", "1"], "to take the file there, write mine.toml"),
+        (["simulate", "mine", "--duration", "1"], "to use the file mine.toml, write its ending"),
         ([*SHORT, "--continue", "nofile.nc"], "there is no such file or store; check the path"),
         ([*SHORT, "-i", "F=@absent_table.csv"], "No such file or directory; check the path"),
         ([*SHORT, "-i", "F=@drve.csv"], "did you mean 'drive.csv'?"),

@@ -61,6 +61,12 @@ MISTAKES = {
     "an initial state almost right": ('S = "c_0', 's = "c_0'),
     "a table almost right": ("[elements.spring]", "[element.spring]"),
     "a key twice": ('stiffness = "k"', 'stiffness = "k"\nstiffness = "k"'),
+    "a quoted key twice": ('stiffness = "k"', '"stiffness" = "k"\n"stiffness" = "k"'),
+    "a key with a long value twice": (
+        'between = ["tip", "wall"]\nforce',
+        'between = ["tip", "wall"]\nbetween = [\n    "tip",\n    "wall",\n]\nforce',
+    ),
+    "a table twice": ("[inputs]", "[inputs]\n[inputs]"),
 }
 
 
@@ -90,9 +96,12 @@ def mend(text: str, message: str) -> str:
         return re.sub(rf"(?m)^{found[1]} = ", f"{found[2]} = ", text, count=1)
     if found := re.search(r"writes the state of its element as its letter, '(\w+)'", message):
         return text.replace("(s/s_0)", f"({found[1]}/s_0)")
-    if found := re.search(r"key '(\w+)' is in its table twice \(line (\d+)\)", message):
+    if found := re.search(r"'([^']+)' is (?:in its table|given) twice \(line (\d+)\)", message):
         lines = text.split("\n")
-        assert lines.pop(int(found[2]) - 1).startswith(f"{found[1]} = ")
+        first = lines.pop(int(found[2]) - 1)
+        assert first.startswith(found[1])
+        while first.endswith("[") and lines.pop(int(found[2]) - 1) != "]":
+            pass
         return "\n".join(lines)
     if found := re.search(r"unknown key '(at|between)'; did you mean '(at|between)'\?", message):
         nodes = {"at": '"tip"', "between": '["tip", "wall"]'}

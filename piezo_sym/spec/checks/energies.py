@@ -106,30 +106,30 @@ def _needed(
     need nothing, as the k of the force k*q*T/T_0, and the temperature, which then depends on the
     states of the stores, too.
     """
-    known = {_above(parse_condition(text, "domain.assume")) for text in spec.domain.assume}
+    known = {_normal_form(parse_condition(text, "domain.assume")) for text in spec.domain.assume}
     free: set[Expr] = {Sym(symbol) for symbol in states(spec)}
     sizes = {n: spec.elements[n].row.form.requires(spec.elements[n], n) for n in stores}
     needed = [condition for of_kind in sizes.values() for condition in of_kind]
     for name, port in ((name, port) for name, own in stores.items() for port in own):
         trees = reversed([*walk(replace(port.law, warm))])
         needed += [Cmp(">", node.right, ZERO) for node in trees if isinstance(node, Div)]
-        rising = _factors(port) if warm and not sizes[name] else ()
+        rising = _positive_factors(port) if warm and not sizes[name] else ()
         needed += [Cmp(">", factor, ZERO) for factor in rising]
     needed = [Cmp(c.op, replace(c.left, warm), c.right) for c in needed]
     needed += [Cmp(">", Sym(f"T_{n}"), ZERO) for n in stores if spec.elements[n].is_body]
     for condition in dict.fromkeys(needed):
-        if _above(condition) not in known and condition.left not in free and names(condition):
+        if _normal_form(condition) not in known and condition.left not in free and names(condition):
             yield condition
 
 
-def _above(condition: Cmp) -> tuple[str, frozenset[Expr]]:
+def _normal_form(condition: Cmp) -> tuple[str, frozenset[Expr]]:
     """Return a condition as the sign of a sum, and its terms in any order."""
     turned = greater(condition)
     total = add(turned.left, neg(turned.right))
     return turned.op, frozenset(total.terms if isinstance(total, Add) else (total,))
 
 
-def _factors(port: Storage | Body) -> Iterator[Expr]:
+def _positive_factors(port: Storage | Body) -> Iterator[Expr]:
     """Yield the factors, free of its state, of the terms that a store's law adds up."""
     for term in port.law.terms if isinstance(port.law, Add) else (port.law,):
         above, below = factors(term, most=1)

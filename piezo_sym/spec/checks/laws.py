@@ -8,7 +8,7 @@ from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Node, names
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS, LETTERS
-from piezo_sym.spec.elements.base import state_symbol
+from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
@@ -48,19 +48,19 @@ def check_references(spec: Tables) -> None:
         for to, field, given in ((role, *row) for role in known for row in element.named(role)):
             where = f"elements.{name}.{field}"
             if given not in known[to]:
-                raise _unknown_reference(where, to, given, tuple(known[to]), spec)
+                raise _unknown_reference(where, to, given, tuple(known[to]), spec, element)
             if getattr(element, field) == (given, given):
                 what, remedy = f"both ends are at body {quote(given)}", "name another thermal_mass"
                 raise SpecError(what, where, "two different bodies", remedy)
 
 
 def _unknown_reference(
-    where: str, to: str, given: str, known: tuple[str, ...], spec: Tables
+    where: str, to: str, given: str, known: tuple[str, ...], spec: Tables, element: Element
 ) -> SpecError:
     what = f"{quote(given)} is no {to} of this spec"
     if to == "input":
         meant = f"{nearest(given, known)}; or " if known else ""
-        ports = spec.elements[where.split(".")[1]].ports("")
+        ports = element.ports("")
         unit = next(p.input_unit for p in ports if isinstance(p, Source | Exchange | HeatInput))
         remedy = f'{meant}declare it in [inputs]: {given} = {{ unit = "{unit}" }}'
         return SpecError(what, where, remedy=remedy)
@@ -208,8 +208,8 @@ def _state_in_law(spec: Tables, word: str, letters: tuple[str, ...], element: st
         return ""
     letter = spec.elements[owner].letter
     if single and bank_of(spec)[owner] == bank_of(spec).get(element):
-        word = letter if owner == element else base
-        return f"a law in a bank writes the state of its own lane, {quote(word)}"
+        meant = letter if owner == element else base
+        return f"a law in a bank writes the state of its own lane, {quote(meant)}"
     if owner == element and letter in letters:
         return f"a law writes the state of its element as its letter, {quote(letter)}"
     if owner == element:
