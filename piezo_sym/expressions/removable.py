@@ -56,18 +56,20 @@ def without_common_factors(node: Expr, name: str, place: Expr = ZERO) -> Expr:
 
 
 def at_rest(law: Expr, name: str) -> Expr:
-    """Return a law with its limit where `name` is 0, if it is known to be zero there."""
+    """Return a law with its limit where `name` is 0, if that is known to be zero."""
     limit = without_common_factors(law, name)
     return limit if value_at(limit, name, ZERO) == ZERO else law
 
 
-def value_at(node: Expr, name: str, place: Expr) -> Expr:
-    """Return what a law without common factors is at `place`, if it has kinks there, else 0.
+def value_at(node: Expr, name: str, place: Expr) -> Expr | None:
+    """Return a law for one value of a name, as far as it is known; None where it has no value.
 
-    Its parameters decide whether max(x - gap, 0) is zero there: then (1/x)*max(x - gap, 0) is
+    Parameters decide whether max(x - gap, 0) is zero there: then (1/x)*max(x - gap, 0) is
     bounded, and else infinite.
     """
-    return _at(node, name, place) if any(map(_has_kink, walk(node))) else ZERO
+    with suppress(ArithmeticError, ValueError):
+        return _at(node, name, place)
+    return None
 
 
 def slope_at(node: Expr, name: str, place: Expr) -> Expr | None:

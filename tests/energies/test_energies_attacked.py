@@ -160,7 +160,14 @@ def test_a_stiffness_without_a_limit_at_rest_is_not_proved(size):
 
 
 @pytest.mark.parametrize(
-    "law", ["k*g*cosh(q/g)*(q/g)/(q/g)", "k*max(q + g, 0)*q/q", "k*q*(q - g)/(q - g)"]
+    "law",
+    [
+        "k*g*cosh(q/g)*(q/g)/(q/g)",
+        "k*max(q + g, 0)*q/q",
+        "k*q*(q - g)/(q - g)",
+        "k*g*abs(q)/q",
+        "k*q*(1 + abs(q)/q)",
+    ],
 )
 def test_a_force_with_another_hole_than_zero_at_rest_is_not_proved(law):
     text = SPRING.format("force", law)

@@ -189,6 +189,12 @@ def test_a_syntax_error_has_its_line():
     assert "line 20" in message
 
 
+def test_of_a_key_that_is_twice_with_a_very_long_value_the_end_is_said():
+    lanes = "\n".join(["x = [", *["    1.5,"] * 60, "]"])
+    with pytest.raises(SpecError, match=r"its table twice \(its value ends in line 63\)"):
+        data(f"x = 1\n{lanes}\n")
+
+
 def test_a_file_is_named_in_the_message(tmp_path):
     path = written(tmp_path, edited_text(("value = 3.5e-3", "value = nan")).encode(), "mine.toml")
     assert str(refusal(load, path)).startswith("mine.toml: parameters.M.value: ")

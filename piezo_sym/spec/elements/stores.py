@@ -205,7 +205,7 @@ def _positive_size(size: Size, element: Any, state: str) -> tuple[Cmp, ...]:
     limit = slope_at(law, state, rest)
     signs = mul(_moved(size, element, state), law), *((limit,) if limit else ())
     here = value_at(law, state, rest)
-    bounded = (Cmp("<=", here, ZERO), Cmp(">=", here, ZERO)) if here != ZERO else ()
+    bounded = (Cmp("<=", here, ZERO), Cmp(">=", here, ZERO)) if here not in (None, ZERO) else ()
     return (*(Cmp(">=", sign, ZERO) for sign in signs), *bounded)
 
 
