@@ -77,18 +77,21 @@ def _antiderivative(text: str, name: str, positive: list[str]) -> str | None:
 
 
 def _of_root(law: sp.Expr, x: sp.Symbol) -> sp.Expr | None:
-    """Return an integral by s of a law with roots of s = a*x + b alone, which are of s > 0.
+    """Return an integral of a law whose roots are all of one s = a*x + b; None for other laws.
 
-    By x SymPy finds one with choices by |x| for them, and the imaginary unit.
+    It is found as one by s > 0, where the roots are real: for x itself, of unknown sign, SymPy
+    gives cases by abs(x) and the imaginary unit, which no law has.
     """
     powers = (p for p in law.atoms(sp.Pow) if p.exp.is_Rational and not p.exp.is_Integer)
     bases = {p.base for p in powers if p.base.has(x)} - {x}
-    for base in bases if len(bases) == 1 else ():
-        slope, s = sp.diff(base, x), sp.Dummy("s", positive=True)
-        if not slope.has(x):
-            moved = law.subs(x, (s - base.subs(x, 0)) / slope)
-            return sp.integrate(moved / slope, s, conds="none").subs(s, base)
-    return None
+    if len(bases) != 1:
+        return None
+    (base,) = bases
+    slope, s = sp.diff(base, x), sp.Dummy("s", positive=True)
+    if slope.has(x):
+        return None
+    moved = law.subs(x, (s - base.subs(x, 0)) / slope)
+    return sp.integrate(moved / slope, s, conds="none").subs(s, base)
 
 
 def main() -> None:

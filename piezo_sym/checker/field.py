@@ -90,7 +90,9 @@ class Field:
 
     def __init__(self, known: Told = lambda _: False, *, scales: bool = False) -> None:
         self.atoms, self.known, self.scales = dict[Any, tuple[int, Node]](), known, scales
-        # polynomials that are zero: c**2 - c, r**n - base; of roots of sums, tried one by one
+        # polynomials that are zero, by their atom: c**2 - c of a choice, r**n - base of a root.
+        # Those of roots of sums are apart in `sums`: a remainder by several of them, which share
+        # symbols, depends on their order, so each is tried alone, and only at the end
         self.relations, self.sums = dict[Ratio, Any](), dict[Ratio, Any]()
         self.nonzero = set[Ratio]()  # factors that are zero nowhere, whatever branch is taken
 

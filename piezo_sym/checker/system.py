@@ -10,7 +10,7 @@ functions of sums, are equal only if they are for all counts.
 
 from collections.abc import Mapping
 from operator import mul
-from typing import Any
+from typing import Any, TypeAlias
 
 from . import laws
 from .field import ONE, ZERO, Field, Ratio
@@ -19,9 +19,11 @@ from .laws import InputError, Node, build, need, num, parse, subs, sym, symbols,
 from .network import Flows, SingularError, Slot, flows
 from .parts import stem
 from .prover import Claim, partial
-from .spec import Element, Spec
+from .spec import Element, Spec, Symbol
 
 MAX_TEXT, MOST_SUMS, LANES, MAX_NAMES, MAX_CHAIN = 100_000, 2, 3, 1000, 50
+
+Slope: TypeAlias = tuple[Node, Symbol] | None
 
 
 class _Published:
@@ -172,11 +174,16 @@ class Finding:
         self._equal("energy", power, ZERO, "dU/dt - y^T u")
         self._gradient()
 
-    def _equal(self, subject: str, given: Ratio, own: Ratio, what: str, *left: Any) -> None:
-        """Compare two expressions; if they may still agree branch by branch, keep what is left."""
+    def _equal(
+        self, subject: str, given: Ratio, own: Ratio, what: str, slope: Slope = None
+    ) -> None:
+        """Compare two expressions; if they may still agree branch by branch, keep the difference.
+
+        Of a `slope` that is a difference in symbols of the spec, with the state it is by.
+        """
         if self.field.is_zero(given - own):
             return
-        tree, *states = left or (_without_lane(self.field.tree(given - own)),)
+        tree, *states = slope or (_without_lane(self.field.tree(given - own)),)
         ops = {part.op for part in walk(tree) if part.op != "**" or part.value.denominator > 1}
         if "sum" in ops or not ops & {"if", "**", *KINKS} or any(k[2:] for k in symbols(tree)):
             self.reasons.setdefault(subject, f"{what} is not that of the network")
@@ -221,7 +228,7 @@ class Finding:
             own = self.law(self.spec.elements[name], "costate", lane)
             slope = laws.derivative(subs(energy, meanings), ("x", name))
             left = build("x - z", x=slope, z=self.spec.elements[name].costate or num(0))
-            self._equal("energy", given, own, f"dU/d{state}", left, ("x", name))
+            self._equal("energy", given, own, f"dU/d{state}", (left, ("x", name)))
 
 
 def _without_lane(tree: Node) -> Node:
