@@ -94,8 +94,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
 
 def relations(spec: Spec, counts: Mapping[str, int], algebra: Any) -> list[Form]:
     """Return the combinations of givens that the laws force to be zero."""
-    *_, left = solved(_equations(spec, _all_branches(spec, counts), algebra))
-    return [row for row in left if row]
+    return [*filter(None, solved(_equations(spec, _all_branches(spec, counts), algebra))[2])]
 
 
 def _all_branches(spec: Spec, counts: Mapping[str, int]) -> list[Branch]:

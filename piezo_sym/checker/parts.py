@@ -6,6 +6,7 @@ Input: the tables of elements.  Output: tables of the kinds in `kinds`.
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from .kinds import Kind
 from .laws import need, parse
 
 #: By the size field of a stop: the kind of its store, the letters of its effort and its rate.
@@ -15,6 +16,12 @@ SIZES = {"stiffness": ("spring", "f", "v"), "capacitance": ("capacitor", "v", "i
 def stem(name: str) -> str:
     """Return the name in the spec of an element, which may be one state of a storage."""
     return name.partition(".")[0]
+
+
+def joins(kind: Kind, entry: Mapping[str, Any]) -> bool:
+    """Return whether an element has lanes that are in parallel with one state."""
+    alone = "count" in entry and not {"slip", "bank", "series"} & {*entry}
+    return alone and kind.form == "store" and kind.across
 
 
 def parts(elements: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -17,7 +17,7 @@ from .field import Field
 from .functions import KINKS
 from .kinds import KINDS, REFERENCES, UNITS, Kind
 from .laws import InputError, Node, build, cancelled, compare, need, num, subs, sym, symbols
-from .parts import parts, slipping_store, stem
+from .parts import joins, parts, slipping_store, stem
 from .units import Dimension, faults, unit
 
 DOTTED, MAX_BYTES = re.compile(r"(\s*\.\s*[\w\"'-]+){9}"), 500_000
@@ -30,7 +30,8 @@ class Element(NamedTuple):
 
     It imposes its `across` variable or not, and the opposite if its store `follows` others.  It
     heats, conducts between, or reads T of its `bodies`.  `lanes` is its bank with the size, `chain`
-    the ends of lanes in series.  A node ("T", body) has the potential T, and draws its entropy.
+    the ends between which lanes are in series.  A node ("T", body) has the potential T, and draws
+    entropy from the body.
     """
 
     name: str
@@ -53,7 +54,8 @@ class Element(NamedTuple):
 class Spec(NamedTuple):
     """A spec: `words` are the meanings of names in [domain], `initial` is by element.
 
-    `states` is the element of each state, `lists` the bank of a parameter, `faults` are of units.
+    `states` is the element of each state, `lists` the bank of each parameter with a value per lane,
+    `faults` are those of units.
     """
 
     parameters: Mapping[str, tuple[Fraction, ...]]
@@ -73,7 +75,8 @@ class Spec(NamedTuple):
 
 def read_spec(text: str) -> Spec:
     """Return the spec of a text; raises `InputError` if the checker cannot read it."""
-    need(len(text) <= MAX_BYTES and not DOTTED.search(text), "the spec is too large, or too deep")
+    small = len(text) <= MAX_BYTES and not DOTTED.search(text)
+    need(small, "the spec is too large, or nested too deeply")
     try:
         data = tomllib.loads(text, parse_float=laws.number)
         need(set(data) <= set(TABLES), "the spec has an unknown table")
@@ -90,14 +93,14 @@ class _Reader:
         entries |= {name: slipping_store(name, entries[name]) for name in self.limits}
         self.parameters = self._values("parameters", "value", "p")
         self.inputs = self._values("inputs", "default", "u")
-        tables["elements"] = dict(parts(tables["elements"]))
-        for name, entry in tables["elements"].items():
+        tables["elements"] = entries = dict(parts(entries))
+        for name, entry in entries.items():
             need(entry["kind"] in KINDS, f"{entry['kind']!r} of {name} is a kind it does not know")
-        self.kinds = {name: KINDS[entry["kind"]] for name, entry in tables["elements"].items()}
+        self.kinds = {name: KINDS[entry["kind"]] for name, entry in entries.items()}
         need(bool(self.kinds), "no elements")
         self.bodies = [name for name, kind in self.kinds.items() if kind.form == "body"]
-        banked = {n: e for n, e in tables["elements"].items() if "count" in e}
-        self.joined = {n: banked.pop(n)["count"] for n in (*banked,) if self._joins(n)}
+        self.joined = {n: e["count"] for n, e in entries.items() if joins(self.kinds[n], e)}
+        banked = {n: e for n, e in entries.items() if "count" in e and n not in self.joined}
         counts = (isinstance(n, int) and n >= 1 for n in self.joined.values())
         need(all(counts), "a count is no whole number above 0")
         self.lanes = {("x", n): (e.get("bank", n), e["count"]) for n, e in banked.items()}
@@ -113,11 +116,6 @@ class _Reader:
         conditions = tuple(dict.fromkeys(self._conditions(initial)))
         tables = (self.parameters, self.inputs, self.words, self.states, self.elements)
         return Spec(*tables, initial, conditions, self._lists(conditions), self.faults)
-
-    def _joins(self, name: str) -> bool:
-        """Return whether the lanes of an element are in parallel with one state."""
-        kind, entry = self.kinds[name], self.tables["elements"][name]
-        return kind.form == "store" and kind.across and not {"slip", "bank", "series"} & {*entry}
 
     def _values(self, table: str, field: str, role: str) -> dict[str, tuple[Fraction, ...]]:
         found = {}
@@ -269,8 +267,7 @@ class _Reader:
                 yield compare(self._resolved(limit, words), ">=")
         all_parts = (part for tree in trees for part in laws.walk(tree))
         for width in (p.args[1] for p in all_parts if p.op in ("deadzone", "saturate")):
-            given = any(role in "zr" for role, _ in symbols(width))
-            need(not given, "a width depends on the law's letter")
+            need(all(r not in "zr" for r, _ in symbols(width)), "a width has the letter of its law")
             yield compare(width, ">=")
 
     def _starts(self, state: str) -> tuple[Node, ...]:

@@ -10,7 +10,7 @@ functions of sums, are equal only if they are for all counts.
 
 from collections.abc import Mapping
 from operator import mul
-from typing import Any, TypeAlias
+from typing import Any
 
 from . import laws
 from .field import ONE, ZERO, Field, Ratio
@@ -19,11 +19,9 @@ from .laws import InputError, Node, build, need, num, parse, subs, sym, symbols,
 from .network import Flows, SingularError, Slot, flows
 from .parts import stem
 from .prover import Claim, partial
-from .spec import Element, Spec, Symbol
+from .spec import Element, Spec
 
 MAX_TEXT, MOST_SUMS, LANES, MAX_NAMES, MAX_CHAIN = 100_000, 2, 3, 1000, 50
-
-Slope: TypeAlias = tuple[Node, Symbol] | None
 
 
 class _Published:
@@ -174,12 +172,10 @@ class Finding:
         self._equal("energy", power, ZERO, "dU/dt - y^T u")
         self._gradient()
 
-    def _equal(
-        self, subject: str, given: Ratio, own: Ratio, what: str, slope: Slope = None
-    ) -> None:
+    def _equal(self, subject: str, given: Ratio, own: Ratio, what: str, slope: Any = ()) -> None:
         """Compare two expressions; if they may still agree branch by branch, keep the difference.
 
-        Of a `slope` that is a difference in symbols of the spec, with the state it is by.
+        Of a `slope` that is a difference of trees in symbols of the spec, with its state.
         """
         if self.field.is_zero(given - own):
             return
