@@ -125,21 +125,19 @@ questions left open are forgotten
   = a_1 > 0; b > 0 | b=0.37
 what is open is no obstacle
   - if verdict is not Verdict.PROVED:
-  -                 return
   + if verdict is Verdict.REFUTED:
-  +                 return
   = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
   = a_1 > 0; b > 0 | b=0.37
 a sign left open is shown
-  - return (Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
+  - return Finding(Verdict.OPEN, None, f"{obligation.statement}: {found.reason}"), ()
   + return None, ()
   = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
   = a_1 > 0; b > 0 | b=0.37
 a refuted question is left open, and forgotten
-  - if found and found[0] is Verdict.REFUTED:
+  - if found and found.verdict is Verdict.REFUTED:
   -             return found
   -         left += [found] if found else []
-  + if found and found[0] is Verdict.REFUTED:
+  + if found and found.verdict is Verdict.REFUTED:
   +             continue
   +         left += [found] if found else []
   = a*v
@@ -152,7 +150,7 @@ a model that breaks the claim is a proof
 ## proofs/refutation
 an answer that bounds do not decide is a proof
   - reason = f"{question.label}: {_why_undecided(question, values)}"
-  -         return Verdict.OPEN, None, reason
+  -         return Finding(Verdict.OPEN, None, reason)
   + return None
   = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
   = a_1 > 0; b > 0 | b=0.37
