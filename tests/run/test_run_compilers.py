@@ -4,6 +4,7 @@ With the address and undefined-behaviour sanitizers built in, runs leave no arra
 are of the size that is asked for, and each of them is watched; gaps between parts are nan.
 """
 
+import ctypes
 import os
 import shlex
 import shutil
@@ -15,10 +16,12 @@ import numpy as np
 import pytest
 
 from piezo_sym import load, sine
+from piezo_sym.bench.problem import problem_of
 from piezo_sym.module_cache import load_module
 from piezo_sym.modules import module_of
 from piezo_sym.run import simulate
 from piezo_sym.run.engine.library import Sources
+from tests.benchmarks.ours import run_in_c
 from tests.codegen.c_compilers import COMPILERS, SANITIZING, runtime
 from tests.codegen.test_c_text import STRICT, called
 
@@ -179,3 +182,40 @@ def test_an_array_that_is_left_is_seen(compiler, tmp_path):
     done = python(compiler, module_of("piezo_stack").__file__, tmp_path / "cache", "short")
     assert "heap-buffer-overflow" in done.stderr
     assert done.stdout == ""
+
+
+IN_USE = """
+unsigned in_use(void)
+{
+    unsigned low, high;
+    __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(1));
+    return low;
+}
+
+void clear(void)
+{
+    __asm__ volatile("vzeroupper");
+}
+"""
+#: Of the states that a processor saves: upper halves of registers of 256 and of 512 bits.
+UPPER = 1 << 2 | 1 << 6
+CPU = Path("/proc/cpuinfo")
+
+
+@pytest.mark.long  # it compiles as for a user
+@pytest.mark.skipif(
+    not CPU.exists() or " xgetbv1 " not in CPU.read_text(), reason="processors of x86-64 tell"
+)
+def test_a_run_leaves_no_upper_halves_of_registers_in_use(tmp_path, monkeypatch):
+    """They make what other libraries do afterwards three times as slow."""
+    monkeypatch.setenv("CC", "gcc")
+    source, made = tmp_path / "in_use.c", tmp_path / "in_use.so"
+    source.write_text(IN_USE)
+    subprocess.run(["gcc", "-O1", "-shared", "-fPIC", source, "-o", made], check=True)
+    processor = ctypes.CDLL(str(made))
+    run = run_in_c(problem_of(load("piezo_stack"), {"V_in": sine(100, 100)}, 5e-3))
+    for rtol in (1e-3, 1e-6):
+        run(rtol)
+        processor.clear()
+        run(rtol)
+        assert not processor.in_use() & UPPER

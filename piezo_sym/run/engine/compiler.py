@@ -26,10 +26,13 @@ from piezo_sym.errors import EngineError, one_line
 COMMON = ("-std=c99", "-fPIC", "-shared", "-ffp-contract=off")
 #: Functions of one library call each other directly, as nothing replaces them.
 DIRECT = "-fno-semantic-interposition"
-#: For gcc: unrolls short loops of known length, such as those over stages; 8 % less time.
+#: For gcc: unrolls short loops of known length, such as those over stages; 8 % less time.  What a
+#: function leaves in registers is not used by its callers: gcc 12 then forgets to clear the upper
+#: halves of vector registers (vzeroupper), which makes other libraries slow.
 WRITTEN_OUT = (
     *("--param", "max-completely-peeled-insns=1000"),
     *("--param", "max-completely-peel-times=32"),
+    "-fno-ipa-ra",
 )
 #: Nobody looks at the processor's flags of exceptions: both sides of a choice may be computed, so
 #: that loops with choices become vectors. No number changes.
