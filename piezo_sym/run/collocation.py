@@ -21,7 +21,7 @@ from piezo_sym.run.engine.batch import Batch, Stepping, steps_of
 from piezo_sym.run.engine.engine import Engine, engine_of, functions_of
 from piezo_sym.run.engine.library import Layout, Sources, library
 from piezo_sym.run.inputs import Inputs, Segment
-from piezo_sym.run.module import UNPROVED, GeneratedModule, row_count, verdict_of
+from piezo_sym.run.module import UNPROVED, GeneratedModule, is_unproved, row_count
 from piezo_sym.run.system import QUIET, DrivenModule
 
 METHOD = "discrete_gradient"
@@ -188,7 +188,7 @@ def _stuck_error(system: DrivenModule, t: float, x: FloatArray) -> RunError:
     """Return the error of a run that stopped at t [s] in the state x (n,)."""
     why = "no step stays in the domain, or a law that jumps (sign) holds the state at its jump"
     remedy = f"look at inputs and state; allow more room in [domain]; {STICKING}"
-    if verdict_of(system.module).startswith(UNPROVED):
+    if is_unproved(system.module):
         why = f"each step leaves the domain or consumes entropy, and the model is {UNPROVED}"
         remedy = "mend what `piezo-sym verify` refutes; or take method LSODA, which goes on"
     names = [record.name for record in system.module.STATES]

@@ -82,7 +82,7 @@ def verdict_of(module: GeneratedModule) -> str:
     return line[1] if line else f"{UNPROVED} (its head says nothing of proofs)"
 
 
-def is_refused(module: GeneratedModule) -> bool:
+def is_unproved(module: GeneratedModule) -> bool:
     """Return whether a module's docstring says that it is not proved.
 
     While a module is being proved, it says nothing.

@@ -21,7 +21,7 @@ from piezo_sym.errors import EngineError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.library import CACHE, Sources, read_source, shared_library
 from piezo_sym.run.engine.records import INT, LONG, POINTER, ParameterRecords, at
-from piezo_sym.run.module import GeneratedModule, held, is_refused, row_count
+from piezo_sym.run.module import GeneratedModule, held, is_unproved, row_count
 
 #: The records of the rows of each function of a module; "" for a single number.
 _ROWS = {
@@ -53,7 +53,7 @@ def engine_of(module: GeneratedModule) -> Engine:
 def functions_of(module: GeneratedModule) -> Sources:
     """Return the sources of a module's functions."""
     texts = read_source(module, ".h"), read_source(module, ".c")
-    return Sources(module.NAME, *texts, proved=not is_refused(module))
+    return Sources(module.NAME, *texts, proved=not is_unproved(module))
 
 
 @lru_cache(maxsize=64)
