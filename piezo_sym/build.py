@@ -7,25 +7,27 @@ Input: a `Model`.  Output: the files of its generated module, or a list of what 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import final
+from typing import TYPE_CHECKING, final
 
-from piezo_sym.codegen.program import MARK
-from piezo_sym.codegen.template import template_of
-from piezo_sym.derivation import derive
-from piezo_sym.errors import DriftError, UsageError, quote
+from piezo_sym.errors import DriftError, PiezoError, ProofError, UsageError, quote
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
-from piezo_sym.proofs import Report, Verdict, proofs_json, smt2
-from piezo_sym.run.engine.c_sources import standalone_step
-from piezo_sym.spec.load import load
-from piezo_sym.spec.model import Model
-from piezo_sym.spec.source import shipped
-from piezo_sym.spec.values import Template
-from piezo_sym.verification.process import examining
-from piezo_sym.version import VERSION
+from piezo_sym.module_cache import cache_files, cache_template, cached_files
+from piezo_sym.report import Report, Verdict, proofs_json, report_of, smt2
+from piezo_sym.spec.source import data, find, read, shipped
+from piezo_sym.spec.values import Template, shape_hash
+from piezo_sym.spec.write import spec_hash
+from piezo_sym.verification.process import examining, started
+from piezo_sym.version import MADE
 
+if TYPE_CHECKING:
+    from piezo_sym.spec.model import Model
+
+#: The file of verdicts, below the folder of a model.
+PROOFS = "proofs.json"
 MISSING, DIFFERS, ENDS = "is missing", "differs from its spec", "has other line ends than \\n"
 LINK, LEFT = "is no regular file or folder", "belongs to no spec given"
 
@@ -49,38 +51,77 @@ class Drift:
 
 def shipped_models() -> tuple[Model, ...]:
     """Return the models of all shipped specs."""
+    from piezo_sym.spec.load import load
+
     return tuple(load(name) for name in shipped())
 
 
-def render(
-    model: Model, *, allow_unproved: bool = False, report: Report | None = None
-) -> dict[str, str]:
+def start(specs: Iterable[str]) -> None:
+    """Start the process that examines specs while they are loaded, unless all are known as proved.
+
+    What is wrong with a spec, loading says.
+    """
+    with suppress(PiezoError):
+        if not all(cached_files(spec_hash(data(read(find(spec))))) for spec in specs):
+            started()
+
+
+def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
     """Return the text of each generated file of a model, by its path below the output folder.
 
-    A model that is not proved is refused, unless `allow_unproved`; `report` is its verdicts, if
-    they are known already.
+    A model that is not proved is refused, unless `allow_unproved`.
     """
-    if report is None:
-        with examining(model) as found:
-            template, report = found.template(), found.report()
-    else:
-        template = template_of(derive(model))
-    if not allow_unproved:
+    report, files = examined(model)
+    if not allow_unproved or f"{model.name}/{model.name}.py" not in files:
         report.raise_if_not_proved()
-    template = replace(with_standalone_step(template, model.name), verdict=verdict_line(report))
-    texts = template.filled(model.flatten().model_dump())
-    made = f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
+    return files
+
+
+def examined(model: Model) -> tuple[Report, dict[str, str]]:
+    """Return the verdicts on a model, and the text of each file that is generated of it.
+
+    What is proved is kept: the very same spec is not proved again. Where the time was too short to
+    print the module, there are only the files of verdicts.
+    """
+    if files := cached_files(model.sha256):
+        return report_of(files[f"{model.name}/{PROOFS}"]), files
+    template = None
+    with examining(model) as found:
+        report = found.report()
+        with suppress(ProofError):
+            template = finished(found.template(), model.name, report)
+    files = files_of(model, report, template)
+    if template and report.proved:
+        keep(model, template, files)
+    return report, files
+
+
+def finished(template: Template, model: str, report: Report | None = None) -> Template:
+    """Return the texts of a module as they are written.
+
+    Programs in C can take its step alone, and its head has the verdict, if that is known.
+    """
+    from piezo_sym.run.engine.c_sources import standalone_step
+
+    step = template.files["_step.c"]
+    files = {**template.files, "_step.c": step + standalone_step(model, step)}
+    return replace(template, files=files, verdict=verdict_line(report) if report else "")
+
+
+def files_of(model: Model, report: Report, template: Template | None) -> dict[str, str]:
+    """Return the text of each generated file of a model; without a template, of its verdicts."""
+    texts = template.filled(model.flatten().model_dump()) if template else {}
     return {
         **{f"{model.name}/{model.name}{ending}": text for ending, text in texts.items()},
-        f"{model.name}/proofs.json": proofs_json(report, model, made),
-        f"{model.name}/proofs.smt2": smt2(report, made),
+        f"{model.name}/{PROOFS}": proofs_json(report, model, MADE),
+        f"{model.name}/proofs.smt2": smt2(report, MADE),
     }
 
 
-def with_standalone_step(made: Template, name: str) -> Template:
-    """Return the texts of a module as they are written: programs in C can take its step alone."""
-    step = made.files["_step.c"]
-    return replace(made, files={**made.files, "_step.c": step + standalone_step(name, step)})
+def keep(model: Model, template: Template, files: Mapping[str, str]) -> None:
+    """Keep what is proved of a model: its files, and texts for other values."""
+    cache_files(model.sha256, files)
+    cache_template(shape_hash(model.flatten().model_dump()), template)
 
 
 def verdict_line(report: Report) -> str:

@@ -1,28 +1,33 @@
-"""The user's cache of generated modules and of templates, and the loader of modules.
+"""The user's cache: generated modules, templates, and all files of what is proved; and a loader.
 
-Input: a model's name, and the hash of its spec or of its shape.  Output: a loaded module, or a
-`Template`.  Each version of the package has its own cache.
+Input: the hash of a spec or of its shape, and a module's name.  Output: a loaded module, a
+`Template`, or texts.  Each version of the package has its own cache.
 """
 
 import hashlib
 import importlib.util
+import json
 import sys
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import asdict
 from functools import cache, lru_cache
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from piezo_sym.errors import FileError
 from piezo_sym.files import path_text, read_text, temporary_folder, write_text, write_together
-from piezo_sym.spec.values import Template, from_text
+from piezo_sym.spec.values import Template
 from piezo_sym.version import VERSION
 
 PACKAGE = Path(__file__).parent
-#: Endings of the package's sources.
+#: Endings of the package's sources, and other packages that proofs rest on.
 SOURCES = (".py", ".c", ".h")
-#: Endings of folders of modules that are not proved, and of templates.
-UNPROVED_FOLDER, SHAPE_FOLDER = "-unproved", "-shape"
+PROVERS = ("sympy", "z3-solver", "python-flint", "numpy")
+#: Endings of folders of modules that are not proved, of templates, and of files of what is proved.
+UNPROVED_FOLDER, SHAPE_FOLDER, PROVED_FOLDER = "-unproved", "-shape", "-proved"
+RECORD = "record.json"  # of plain data, after its digest
 
 
 def cached_module(name: str, sha256: str, kind: str = "") -> ModuleType | None:
@@ -48,31 +53,70 @@ def write_module(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleTyp
     return load_module(folder / f"{name}.py")
 
 
-def cached_template(name: str, shape: str) -> Template | None:
+def cached_template(shape: str) -> Template | None:
     """Return the proved texts of a spec's shape, if they are in the cache."""
+    found = _record(shape, SHAPE_FOLDER)
+    return None if found is None else Template(**found)
+
+
+def cache_template(shape: str, template: Template) -> None:
+    """Write the proved texts of a spec's shape to the cache, if possible."""
+    _keep(shape, SHAPE_FOLDER, asdict(template))
+
+
+def cached_files(sha256: str) -> dict[str, str] | None:
+    """Return the text of every file that is generated of a proved spec, if they are in the cache.
+
+    What was proved of the very same spec, by the same sources of this package, is not proved anew.
+    """
+    found: dict[str, str] | None = _record(sha256, PROVED_FOLDER)
+    return found
+
+
+def cache_files(sha256: str, files: Mapping[str, str]) -> None:
+    """Write the text of every file that is generated of a proved spec to the cache, if possible."""
+    _keep(sha256, PROVED_FOLDER, dict(files))
+
+
+def _record(sha256: str, kind: str) -> Any:
+    """Return plain data from the cache; None if it is missing, or not what was written."""
     with suppress(FileError):
-        text = read_text(_path(name, shape, SHAPE_FOLDER).with_suffix(".json"))
-        return None if text is None else from_text(text)
+        digest, _, text = (read_text(_folder(sha256, kind) / RECORD) or "").partition("\n")
+        return json.loads(text) if digest == _digest(text) else None
     return None
 
 
-def cache_template(name: str, shape: str, template: Template) -> None:
-    """Write the proved texts of a spec's shape to the cache, if possible."""
+def _keep(sha256: str, kind: str, content: Any) -> None:
+    """Write plain data to the cache, after its digest, if possible."""
+    text = json.dumps(content)
     with suppress(FileError):
-        write_text(_path(name, shape, SHAPE_FOLDER).with_suffix(".json"), template.to_text())
+        write_text(_folder(sha256, kind) / RECORD, f"{_digest(text)}\n{text}")
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _path(name: str, sha256: str, kind: str = "") -> Path:
+    return _folder(sha256, kind) / f"{name}.py"
+
+
+def _folder(sha256: str, kind: str) -> Path:
     import platformdirs
 
     folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
-    return folder / f"{sha256}-{_generator()}{kind}" / f"{name}.py"
+    return folder / f"{sha256}-{_generator()}{kind}"
 
 
 @cache
 def _generator() -> str:
-    """Return the hash of the package's own sources, so that an edit invalidates the cache."""
-    digest = hashlib.sha256(VERSION.encode())
+    """Return the hash of the package's own sources, so that an edit invalidates the cache.
+
+    So do other versions of what proofs rest on.
+    """
+    from importlib.metadata import version
+
+    digest = hashlib.sha256(" ".join([VERSION, *map(version, PROVERS)]).encode())
     for path in sorted(PACKAGE.rglob("*.[pch]*")):
         if path.suffix in SOURCES and PACKAGE / "generated" not in path.parents:
             digest.update(path.read_bytes())

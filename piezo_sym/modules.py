@@ -11,7 +11,6 @@ import filecmp
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import replace
 from pathlib import Path
 from threading import Thread
 from types import ModuleType
@@ -25,7 +24,6 @@ from piezo_sym.module_cache import (
     PACKAGE,
     UNPROVED_FOLDER,
     cache_module,
-    cache_template,
     cached_module,
     cached_template,
     load_module,
@@ -147,7 +145,7 @@ def _refilled(name: str, sha256: str, data: Mapping[str, Any]) -> ModuleType | N
 
     What else loading would say of the values, the module's conditions say: in doubt, None.
     """
-    found = cached_template(name, shape_hash(data))
+    found = cached_template(shape_hash(data))
     if found is None or not found.quick:
         return None
     try:
@@ -172,26 +170,25 @@ def _starts_inside(module: Any) -> bool:
 
 def _derived(model: Model, stages: int | None) -> ModuleType:
     """Return the module of a model, generated into the user's cache, with its template."""
-    from piezo_sym.build import verdict_line, with_standalone_step
+    from piezo_sym.build import files_of, finished, keep
     from piezo_sym.verification.process import examining
 
     data = model.flatten().model_dump()
     shape = shape_hash(data)
-    found = cached_template(model.name, shape)
-    if found is not None:
+    if found := cached_template(shape):
         from piezo_sym.derivation import derive
 
         derive(model)  # values may contradict each other where others do not
     else:
         with examining(model) as examined:
-            found = with_standalone_step(examined.template(), model.name)
-            with _compiling_ahead(model.name, shape, found.filled(data), stages):
+            texts = finished(examined.template(), model.name).filled(data)
+            with _compiling_ahead(model.name, shape, texts, stages):
                 report = examined.report()
-        found = replace(found, verdict=verdict_line(report))
+        found = finished(examined.template(), model.name, report)
         if report.failures and (module := _unproved(model, found.filled(data))):
             return module
         report.raise_if_not_proved()
-        cache_template(model.name, shape, found)
+        keep(model, found, files_of(model, report, found))
     return cache_module(model.name, model.sha256, found.filled(data))
 
 

@@ -14,7 +14,7 @@ from piezo_sym.version import VERSION
 
 if TYPE_CHECKING:
     from piezo_sym.errors import PiezoError
-    from piezo_sym.proofs.report import Report, Row
+    from piezo_sym.report import Report, Row
     from piezo_sym.verification.recheck import Recheck
 
 

@@ -15,7 +15,7 @@ from piezo_sym.errors import ContradictionError, PiezoError, ProofError
 from piezo_sym.files import write_text
 
 if TYPE_CHECKING:
-    from piezo_sym.proofs.report import Report, Row
+    from piezo_sym.report import Report, Row
     from piezo_sym.verification.recheck import Recheck
 
 
@@ -33,13 +33,16 @@ def verify(
     of any size, REFUTED with a witness, or OPEN with the reason.  Exit code 0 if every required
     property is proved, 1 if one is not (or the second program does not confirm it), 2 if a spec is
     wrong; the others are looked at all the same.  Exit code 3: a proof and a number disagree.
+
+    What is proved is kept in the user's cache, and not proved again before the spec or the package
+    changes.
     """
     if recheck:
         from piezo_sym.verification.recheck import check_installed
 
         check_installed()
-    reports, errors = _reports(specs)
-    second = {spec: _rechecked(spec, report) for spec, report in reports.items() if recheck}
+    reports, proofs, errors = _reports(specs)
+    second = {spec: _rechecked(spec, text) for spec, text in proofs.items() if recheck}
     if junit is not None:
         pairs = [(report, second.get(spec)) for spec, report in reports.items()]
         write_text(junit, junit_xml(pairs, errors))
@@ -67,34 +70,37 @@ def _show(reports: dict[str, Report], second: dict[str, Recheck], *, as_json: bo
         typer.echo(json.dumps(rows, indent=2))
 
 
-def _reports(specs: list[str]) -> tuple[dict[str, Report], list[PiezoError]]:
-    from piezo_sym.verification.process import examined_model, started
+def _reports(specs: list[str]) -> tuple[dict[str, Report], dict[str, str], list[PiezoError]]:
+    """Return the verdicts on specs, the texts of their ``proofs.json``, and what is wrong."""
+    from piezo_sym.build import PROOFS, examined, start
 
-    started()
+    start(specs)
     from piezo_sym.spec.load import load
 
     reports: dict[str, Report] = {}
+    proofs: dict[str, str] = {}
     errors: list[PiezoError] = []
     for spec in specs:
         try:
             with about(spec):
-                reports[spec] = examined_model(load(spec))
+                model = load(spec)
+                reports[spec], files = examined(model)
+                proofs[spec] = files[f"{model.name}/{PROOFS}"]
         except ContradictionError:
             raise
         except PiezoError as error:
             errors.append(error)
-    return reports, errors
+    return reports, proofs, errors
 
 
-def _rechecked(spec: str, report: Report) -> Recheck:
-    from piezo_sym.proofs import proofs_json
+def _rechecked(spec: str, proofs: str) -> Recheck:
     from piezo_sym.spec.load import load
     from piezo_sym.spec.source import find, read
     from piezo_sym.verification.recheck import recheck
 
     model = load(spec)
     text = model.flatten().to_toml() if model.flatten() is not model else read(find(spec))
-    return recheck(text, proofs_json(report, model, ""))
+    return recheck(text, proofs)
 
 
 def _rows(report: Report, second: Recheck | None) -> list[dict[str, object]]:

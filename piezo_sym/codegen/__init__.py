@@ -10,7 +10,7 @@ from piezo_sym.codegen.c.step_header import c_step_header
 from piezo_sym.codegen.collocation import Collocation, collocation_of
 from piezo_sym.codegen.lower import lower
 from piezo_sym.codegen.numpy.module import numpy_module
-from piezo_sym.codegen.program import MARK, Program
+from piezo_sym.codegen.program import Program
 
 Printer: TypeAlias = Callable[[Program, Collocation], str]
 #: The printer of each file of a module, by the ending of its name after the model's.
@@ -28,4 +28,4 @@ def printed(program: Program, step: Collocation) -> dict[str, str]:
     return {ending: write(program, step) for ending, write in PRINTERS.items()}
 
 
-__all__ = ["MARK", "PRINTERS", "collocation_of", "lower", "numpy_module", "printed"]
+__all__ = ["PRINTERS", "collocation_of", "lower", "numpy_module", "printed"]

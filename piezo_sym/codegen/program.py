@@ -14,10 +14,7 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.expressions.tree import Expr, LaneSum, Node, names
 from piezo_sym.spec.names import fresh
 from piezo_sym.spec.values import HASH, VERDICT, lane_name, place
-from piezo_sym.version import VERSION
-
-#: The mark of every generated file.
-MARK = "Made by piezo_sym"
+from piezo_sym.version import MADE
 
 
 @final
@@ -200,7 +197,7 @@ def head_lines(
         f"Proofs:  {program.verdict}",
         *PROOFS,
         "",
-        f"{MARK} {VERSION}; do not edit: change the spec, then run `piezo-sym generate`.",
+        MADE,
         *notes,
         "",
         f"x = ({', '.join(field.spread for field in program.states)})",

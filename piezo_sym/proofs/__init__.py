@@ -5,7 +5,7 @@ obligations    IPHS -> Obligation        domain, bodies, balances, laws, ties, c
 queries        Question -> Query         obligations, branches, rational, query
 answers        Query -> Answer           solvers, in processes of their own (worker)
 verdicts       Obligation -> Row         prove; sign_analysis and signs; witnesses by exact_eval
-report         rows -> Report            report, published
+report         rows -> Report            published; piezo_sym.report
 """
 
 from collections.abc import Iterable, Iterator
@@ -22,9 +22,9 @@ from piezo_sym.proofs.domain import divisors, domain_defined, why_empty
 from piezo_sym.proofs.obligations import Obligation
 from piezo_sym.proofs.prove import prove
 from piezo_sym.proofs.published import published
-from piezo_sym.proofs.report import Report, Row, Verdict, proofs_json, smt2
 from piezo_sym.proofs.solvers import opinions
 from piezo_sym.proofs.units import units
+from piezo_sym.report import Report, Row, Verdict, proofs_json, smt2
 from piezo_sym.spec.elements.ports import Conductor
 
 __all__ = [
@@ -38,7 +38,6 @@ __all__ = [
     "proofs_json",
     "prove",
     "smt2",
-    "stated",
 ]
 
 
@@ -47,30 +46,34 @@ def decide(iphs: IPHS) -> Report:
 
     `piezo_sym.verify` asks for more before it calls a row PROVED: see `verification`.
     """
-    prover = Prover(iphs, report := stated(iphs))
-    for number in range(len(report.obligations)):
+    prover = Prover(iphs)
+    for number in range(len(prover.obligations)):
         prover.decide(number)
-    return replace(report, rows=tuple(prover.rows))
-
-
-def stated(iphs: IPHS) -> Report:
-    """Return the report on a system in which only the rows on units are decided."""
-    own = obligations(iphs)
-    rows = [
-        Row(o.id, o.element, o.statement, Verdict.OPEN, required=o.required, method="") for o in own
-    ]
-    return Report(iphs.model.name, (*rows, *units(iphs)), own, published(iphs))
+    return prover.report()
 
 
 @final
 class Prover:
-    """Decides the rows of a system, one at a time; what is not decided yet is OPEN in `rows`."""
+    """Decides the rows of a system, one at a time; what is not decided yet is OPEN in `rows`.
 
-    def __init__(self, iphs: IPHS, report: Report) -> None:
-        self.iphs, self.obligations, self.rows = iphs, report.obligations, [*report.rows]
+    Rows on units, which come last, are decided at once.
+    """
+
+    def __init__(self, iphs: IPHS) -> None:
+        self.iphs, self.obligations = iphs, obligations(iphs)
+        self.rows = [
+            Row(o.id, o.element, o.statement, Verdict.OPEN, required=o.required, method="")
+            for o in self.obligations
+        ]
+        self.rows += units(iphs)
         self._solver, self._named = opinions(), dict[tuple[str, str], list[int]]()
         for number, o in enumerate(self.obligations):
             self._named.setdefault((o.id, o.element), []).append(number)
+
+    def report(self) -> Report:
+        """Return the verdicts, and what was to be shown."""
+        asked = tuple(o.published() for o in self.obligations)
+        return Report(self.iphs.model.name, tuple(self.rows), asked, published(self.iphs))
 
     def decide(self, number: int) -> Row:
         """Return the verdict on an obligation, whose premises have been decided."""

@@ -27,6 +27,7 @@ from piezo_sym.proofs.branches import (
 )
 from piezo_sym.proofs.query import Query, query
 from piezo_sym.proofs.rational import cleared, implied, parts_of
+from piezo_sym.report import Stated
 
 #: A claim that holds nowhere, and so follows only from conditions that no point satisfies.
 NEVER = Cmp("<", ONE, ZERO)
@@ -213,10 +214,10 @@ class Obligation:
     loose: str = ""
     open_because: str = ""  # why no questions could be asked
 
-    @property
-    def queries(self) -> tuple[Query, ...]:
-        """The queries of its questions, for solvers."""
-        return tuple(question.query for question in self.questions)
+    def published(self) -> Stated:
+        """Return what others are told of it."""
+        queries = ((question.query.label, question.query.text()) for question in self.questions)
+        return Stated(self.latex, self.assumptions, self.rests_on, tuple(queries))
 
     def smooth(self) -> Obligation:
         """Return the obligation with its claims split into smooth ones."""

@@ -22,11 +22,11 @@ from piezo_sym.proofs.laws import branch_questions
 from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.refutation import Finding, beside_own_values, checked_model, refutation
-from piezo_sym.proofs.report import Row, Verdict
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import SolverLike, opinions
 from piezo_sym.proofs.ties import drive_of
+from piezo_sym.report import Row, Verdict
 from piezo_sym.spec.tables import condition_text
 
 #: Size of banks in a refutation by algebra: with one lane, coupling between lanes would not show.

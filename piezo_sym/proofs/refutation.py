@@ -16,8 +16,8 @@ from piezo_sym.proofs.continuity import jumps
 from piezo_sym.proofs.domain import spec_points
 from piezo_sym.proofs.mending import JUMPS, MEETS
 from piezo_sym.proofs.obligations import Question
-from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.solvers import Answer, SolverLike
+from piezo_sym.report import Verdict
 from piezo_sym.spec.tables import condition_text
 
 

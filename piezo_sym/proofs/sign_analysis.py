@@ -20,12 +20,12 @@ from piezo_sym.expressions.tree import ONE, ZERO, Add, Cmp, Expr, If, Mul, Neg, 
 from piezo_sym.proofs.asked import Domain, Numbers, moved_counterexample, simple_counterexample
 from piezo_sym.proofs.branches import opposite
 from piezo_sym.proofs.obligations import SignOf
-from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.signs.cases import balanced, cases, choice_outside, grouped, summands
 from piezo_sym.proofs.signs.certificate import Case, Term
 from piezo_sym.proofs.signs.decide import decide_sign
 from piezo_sym.proofs.signs.reduce import Reduction, reductions
 from piezo_sym.proofs.solvers import SolverLike
+from piezo_sym.report import Verdict
 
 #: Functions of one variable without a proved sign, after which the search stops.
 MOST_FAILED = 12

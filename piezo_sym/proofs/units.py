@@ -27,7 +27,7 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp, Expr, Mul, Neg, Node, Num, Sym, names, walk
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.report import Row, Verdict
+from piezo_sym.report import Row, Verdict
 from piezo_sym.spec.elements import with_ratio_in
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.origins import Origins

@@ -5,11 +5,9 @@ without its values, and the texts of its module with new ones.  Nothing here nee
 so that a run can recognise an edit of a value without loading them.
 """
 
-import hashlib
-import json
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeAlias, final
 
@@ -62,21 +60,6 @@ class Template:
             ending: PLACE.sub(lambda match: values[match[0]], text)
             for ending, text in self.files.items()
         }
-
-    def to_text(self) -> str:
-        """Return the template as JSON, after its digest."""
-        text = json.dumps(asdict(self))
-        return f"{_digest(text)}\n{text}"
-
-
-def from_text(text: str) -> Template | None:
-    """Return the template in a text; None if its digest does not fit."""
-    digest, _, content = text.partition("\n")
-    return Template(**json.loads(content)) if digest == _digest(content) else None
-
-
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def shape_hash(data: Mapping[str, Any]) -> str:

@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import final
 
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.report import Row, Verdict
+from piezo_sym.report import Row, Verdict
 from piezo_sym.translation.c_reader import read_c
 from piezo_sym.translation.c_step import read_step
 from piezo_sym.translation.change import moved

@@ -18,7 +18,7 @@ from piezo_sym.verification.process import examined
 
 if TYPE_CHECKING:
     from piezo_sym.iphs import IPHS
-    from piezo_sym.proofs.report import Report
+    from piezo_sym.report import Report
 
 
 def verify(iphs: IPHS) -> Report:

@@ -15,7 +15,7 @@ from typing import Any, TypeAlias, final
 from piezo_sym.codegen.template import template_of
 from piezo_sym.falsify import POINTS, Attack, Hunt, module_from
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs import Prover, Report, Row, Verdict, stated
+from piezo_sym.proofs import Prover, Report, Row, Verdict
 from piezo_sym.spec.values import Template
 from piezo_sym.translation import program_row, worst
 from piezo_sym.translation.program import STATEMENT
@@ -44,7 +44,7 @@ def examine(
 ) -> Iterator[Template | Report | Progress]:
     """Yield the texts of a system's module, its rows, all open, and each verdict once it is final.
 
-    Obligations follow the rows once all are decided.
+    What was stated follows the rows once all are decided.
 
     Parameters
     ----------
@@ -54,15 +54,15 @@ def examine(
     """
     with apart(_printed(iphs, apart)) as printed:
         try:
-            report = stated(iphs)
+            prover = Prover(iphs)
         finally:  # without it, too, the texts may be wanted
             yield (made := next(printed))
-        report = replace(report, rows=(*report.rows, PROGRAM))
-        yield replace(report, obligations=())  # they are sent with their queries, once made
+        rows = (*prover.rows, PROGRAM)
+        yield Report(iphs.model.name, rows)
         text = made.filled(iphs.model.flatten().model_dump())[".py"]
-        work = _Work(iphs, report, text, points, printed)
+        work = _Work(prover, rows, text, points, printed)
         again = [n for n, times in late.items() if times == 1]
-        rest = [n for n in range(len(report.obligations)) if n not in late]
+        rest = [n for n in range(len(prover.obligations)) if n not in late]
         waiting = {*work.prover.resting(late)}
         sure = {n: row for n, row in known.items() if n not in waiting}
         yield from work.decided(rest, SHARE, sure)
@@ -91,10 +91,10 @@ class _Work:
     """The rows of a system that is examined."""
 
     def __init__(
-        self, iphs: IPHS, report: Report, text: str, points: int, read: Iterator[Row]
+        self, prover: Prover, rows: tuple[Row, ...], text: str, points: int, read: Iterator[Row]
     ) -> None:
-        self.iphs, self.report, self.points, self.read = iphs, report, points, read
-        self.prover, self.program = Prover(iphs, report), len(report.rows) - 1
+        self.prover, self.rows, self.points, self.read = prover, rows, points, read
+        self.program = len(rows) - 1
         self._text, self._done, self._proved = text, dict[int, Row](), dict[int, Row]()
 
     def begun(self, number: int | None, part: float) -> Progress:
@@ -123,11 +123,11 @@ class _Work:
             else:
                 self._done[number] = row
         yield self.begun(None, 1.0)
-        yield self.report
+        yield replace(self.prover.report(), rows=self.rows)  # open, until each is said
         keys = self._attackable(claims)
         if not keys:
             return
-        hunt = Hunt(self.iphs, module_from(self._text), tuple(keys.values()), self.points)
+        hunt = Hunt(self.prover.iphs, module_from(self._text), tuple(keys.values()), self.points)
         hunt.search()
         for number, key in keys.items():
             yield self.begun(number, part)

@@ -34,7 +34,7 @@ from piezo_sym.verification.protocol import (
 
 if TYPE_CHECKING:
     from piezo_sym.iphs import IPHS
-    from piezo_sym.proofs.report import Report
+    from piezo_sym.report import Report
     from piezo_sym.spec.model import Model
 
 #: Seconds for a system of up to SMALL elements, and for each element more.

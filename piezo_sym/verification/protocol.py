@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, final
 
 if TYPE_CHECKING:
     from piezo_sym.iphs import IPHS
-    from piezo_sym.proofs.report import Row
+    from piezo_sym.report import Row
     from piezo_sym.spec.model import Model
 
 

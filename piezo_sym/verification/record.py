@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import final
 
-from piezo_sym.proofs.report import Report, Row, Verdict
+from piezo_sym.report import Report, Row, Verdict
 from piezo_sym.verification.protocol import Progress, Stop
 
 #: What is done where no row is being looked at.
@@ -36,7 +36,7 @@ class Record:
     def take(self, message: Report | Progress) -> None:
         """Take note of all rows, which are open, or of verdicts on some."""
         if isinstance(message, Report):
-            self._stated = message if message.obligations else self._stated or message
+            self._stated = message if message.stated else self._stated or message
         else:
             self._rows |= message.rows
             self._next = message.next

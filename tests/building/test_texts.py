@@ -6,7 +6,8 @@ from functools import cache
 import pytest
 
 from piezo_sym import Model, PiezoError, derive, load, verify
-from piezo_sym.build import render
+from piezo_sym.build import files_of
+from piezo_sym.codegen.template import template_of
 
 HOSTILE = [
     'a "quoted" word',
@@ -34,8 +35,8 @@ def report():
 
 
 def text_of(spec):
-    text, *_ = render(Model(**spec), report=report()).values()
-    return text
+    model = Model(**spec)
+    return files_of(model, report(), template_of(derive(model)))["piezo_stack/piezo_stack.py"]
 
 
 @pytest.mark.some(2)

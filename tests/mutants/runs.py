@@ -84,7 +84,7 @@ def mutated(text: str, mutant: Mutant) -> Said:
     report = decide(iphs)
     texts = printed(lower(iphs, ""), collocation_of(iphs))
     rows = (*report.rows, program_row(iphs, texts))
-    whole = Report(report.model, rows, report.obligations, report.system)
+    whole = Report(report.model, rows, report.stated, report.system)
     said = {"rows": _verdicts(whole), "system": _system(iphs, report), "net": ""}
     said["proofs"] = proofs_json(whole, iphs.model, "made by a test")
     claims = [key for key, verdict in said["rows"].items() if verdict == "PROVED"]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from piezo_sym import derive
 from piezo_sym.errors import SpecError
 from piezo_sym.proofs import Verdict, decide
-from piezo_sym.proofs.report import Row
+from piezo_sym.report import Row
 from piezo_sym.spec.load import parse
 from tests.clock import within
 from tests.networks import law_values

@@ -9,8 +9,8 @@ import re
 import pytest
 
 from piezo_sym import PiezoError, derive
-from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.units import units
+from piezo_sym.report import Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import find
 

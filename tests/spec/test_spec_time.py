@@ -7,7 +7,8 @@ from spec_tools import edited_text, refusal
 from test_spec_parse import HOSTILE
 
 from piezo_sym import PiezoError, derive, load, verify
-from piezo_sym.build import render
+from piezo_sym.build import files_of, render
+from piezo_sym.codegen.template import template_of
 from piezo_sym.expressions import parse as parse_module
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.load import parse
@@ -141,7 +142,7 @@ def words(law, v, T):
 def stages(text):
     """Take a spec through all stages: what it is, what is proved of it, and its module."""
     model = parse(text)
-    files = render(model, allow_unproved=True, report=verify(derive(model)))
+    files = files_of(model, verify(derive(model)), template_of(derive(model)))
     compile(files[f"{model.name}/{model.name}.py"], "module", "exec")
 
 

@@ -12,7 +12,7 @@ from piezo_sym import derive, load
 from piezo_sym.codegen import lower
 from piezo_sym.expressions.calculus import add, mul
 from piezo_sym.expressions.tree import LaneSum, Num
-from piezo_sym.proofs.report import Verdict
+from piezo_sym.report import Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.translation.program import Reference, different
 from tests.mutants.specs import spec_of

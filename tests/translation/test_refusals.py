@@ -3,7 +3,7 @@
 import pytest
 
 from piezo_sym import derive, load
-from piezo_sym.proofs.report import Verdict
+from piezo_sym.report import Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.translation.program import Reference, different
 from tests.mutants.specs import spec_of

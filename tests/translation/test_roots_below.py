@@ -6,7 +6,7 @@ A step's integrands are compared outside the domain, where a parameter has no si
 import pytest
 
 from piezo_sym import derive
-from piezo_sym.proofs.report import Verdict
+from piezo_sym.report import Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.translation.program import Reference
 from tests.translation.mutants import mutants

@@ -8,7 +8,7 @@ import pytest
 
 from piezo_sym import PiezoError, derive, simulate
 from piezo_sym.modules import module_of
-from piezo_sym.proofs.report import Verdict
+from piezo_sym.report import Verdict
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.spec.load import parse
 from piezo_sym.translation.program import Reference

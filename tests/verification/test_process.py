@@ -201,12 +201,12 @@ def test_texts_come_before_the_verdicts_on_them():
 def test_texts_come_also_where_too_much_would_have_to_be_stated(monkeypatch):
     """They are made in a copy, and can be written as they are."""
 
-    def stated(_):
+    def prover(_):
         raise MemoryError
 
     monkeypatch.setattr(process, "FEWEST_BESIDE", 1)
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
-    monkeypatch.setattr(examine, "stated", stated)
+    monkeypatch.setattr(examine, "Prover", prover)
     first, last = answer(Request(load("oscillator"), 60.0))
     assert first == template_of(derive(load("oscillator")))
     assert last == TOO_LARGE

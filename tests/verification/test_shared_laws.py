@@ -7,7 +7,7 @@ import pytest
 
 from piezo_sym import derive, verify
 from piezo_sym.proofs import decide
-from piezo_sym.proofs.report import Verdict
+from piezo_sym.report import Verdict
 from piezo_sym.spec.load import parse
 
 WELL = "welldef"

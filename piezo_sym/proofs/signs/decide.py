@@ -12,11 +12,11 @@ from fractions import Fraction
 from typing import final
 
 from piezo_sym.expressions.tree import Expr, LaneSum, names, walk
-from piezo_sym.proofs.report import Verdict
 from piezo_sym.proofs.signs.certificate import Windows
 from piezo_sym.proofs.signs.enclosures import Window, enclose, value
 from piezo_sym.proofs.signs.intervals import INF
 from piezo_sym.proofs.signs.shift import recentred
+from piezo_sym.report import Verdict
 
 #: Derivatives on windows that are evaluated before a decision is left open.
 BUDGET = 1000

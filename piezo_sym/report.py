@@ -5,16 +5,19 @@ Input: rows.  Output: a `Report` to print or to raise from, and files for others
 proofs.smt2``: each ``unsat`` proves the claim in the comment above it).
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from itertools import zip_longest
-from typing import final
+from typing import TYPE_CHECKING, Any, final
 
 from piezo_sym.errors import ProofError
-from piezo_sym.proofs.obligations import Obligation
-from piezo_sym.spec.model import Model
+
+if TYPE_CHECKING:
+    from piezo_sym.spec.model import Model
 
 
 @final
@@ -88,6 +91,25 @@ class Row:
 
 
 @final
+@dataclass(frozen=True)
+class Stated:
+    """What was to be shown for a row.
+
+    Attributes
+    ----------
+    latex : the property as mathematics.
+    assumptions : the comparisons of the domain that it is stated under.
+    rests_on : (id, element) of the rows that must hold, too.
+    queries : for solvers, in words and in SMT-LIB 2.
+    """
+
+    latex: str
+    assumptions: tuple[str, ...] = ()
+    rests_on: tuple[tuple[str, str], ...] = ()
+    queries: tuple[tuple[str, str], ...] = ()
+
+
+@final
 @dataclass(frozen=True, repr=False)
 class Report:
     """The verdicts on one model.
@@ -96,13 +118,13 @@ class Report:
     ----------
     model : its name.
     rows : the verdicts.
-    obligations : of the rows, in the same order; rows on units have none.
+    stated : what was to be shown for each row; rows on units come last, and have none.
     system : the system as text, for a second program to check; see `published`.
     """
 
     model: str
     rows: tuple[Row, ...]
-    obligations: tuple[Obligation, ...] = ()
+    stated: tuple[Stated, ...] = ()
     system: Mapping[str, object] = field(default_factory=dict)
 
     @property
@@ -175,30 +197,51 @@ def smt2(report: Report, made: str) -> str:
         ),
         "(set-logic QF_NRA)",
     ]
-    for obligation in report.obligations:
-        if (obligation.id, obligation.element) in elsewhere:
+    for row, stated in zip(report.rows, report.stated, strict=False):
+        if (row.id, row.element) in elsewhere:
             continue
-        for query in obligation.queries:
-            where = f" of {obligation.element}" if obligation.element else ""
-            lines += ["", f"; {obligation.id}{where}: {query.label}", "(push 1)", query.text()]
+        for label, query in stated.queries:
+            lines += ["", f"; {row.name}: {label}", "(push 1)", query]
             lines += ["(check-sat)", "(pop 1)"]
     return "\n".join(lines) + "\n"
 
 
 def proofs_json(report: Report, model: Model, made: str) -> str:
-    """Return every obligation of a report and its verdict, as JSON."""
-    entries = zip_longest(report.rows, report.obligations)  # units have rows alone
+    """Return every row of a report and what was to be shown for it, as JSON."""
+    entries = zip_longest(report.rows, report.stated)  # units have rows alone
     content = {
         "made": made,
         "model": report.model,
         "spec_sha256": model.sha256,
         "system": report.system,
-        "obligations": [_entry(row, obligation) for row, obligation in entries],
+        "obligations": [_entry(row, stated) for row, stated in entries],
     }
     return json.dumps(content, indent=1) + "\n"
 
 
-def _entry(row: Row, obligation: Obligation | None) -> dict[str, object]:
+def report_of(text: str) -> Report:
+    """Return the rows and the system in the text of ``proofs.json``."""
+    content = json.loads(text)
+    rows = (_row(entry) for entry in content["obligations"])
+    return Report(content["model"], tuple(rows), system=content["system"])
+
+
+def _row(entry: Mapping[str, Any]) -> Row:
+    return Row(
+        entry["id"],
+        entry["element"] or "",
+        entry["statement"],
+        Verdict(entry["verdict"]),
+        entry["witness"],
+        entry["reason"] or "",
+        entry["required"],
+        entry["method"],
+        entry["points"],
+        tuple(entry["certificate"] or ()),
+    )
+
+
+def _entry(row: Row, stated: Stated | None) -> dict[str, object]:
     plain = row.as_dict("")
     entry = {
         **{name: plain[name] for name in ("id", "element")},
@@ -209,9 +252,9 @@ def _entry(row: Row, obligation: Obligation | None) -> dict[str, object]:
         "points": row.points,
         "certificate": list(row.certificate) or None,
     }
-    if obligation:
-        entry["latex"] = obligation.latex
-        entry["assumptions"] = list(obligation.assumptions)
-        entry["rests_on"] = [list(name) for name in obligation.rests_on]
-        entry["queries"] = [query.label for query in obligation.queries]
+    if stated:
+        entry["latex"] = stated.latex
+        entry["assumptions"] = list(stated.assumptions)
+        entry["rests_on"] = [list(name) for name in stated.rests_on]
+        entry["queries"] = [label for label, _ in stated.queries]
     return entry
