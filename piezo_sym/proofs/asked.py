@@ -54,7 +54,7 @@ Numbers = Mapping[str, Fraction]
 
 @final
 @dataclass(frozen=True)
-class Domain:
+class DomainOracle:
     """A domain, and a solver that decides claims on it."""
 
     where: tuple[Cmp, ...]  # the conditions of the domain
@@ -65,7 +65,7 @@ class Domain:
     #: The solver's answers so far, in all cases of one law.
     results: list[str] = field(default_factory=list)
 
-    def within(self, *guards: Cmp) -> Domain:
+    def within(self, *guards: Cmp) -> DomainOracle:
         """Return the part of the domain where guards hold."""
         return replace(self, where=(*self.where, *guards), known={})
 
@@ -176,14 +176,14 @@ class Domain:
         return bool(all_hold(near, numbers)) and all_hold((claim,), numbers) is False
 
 
-def simple_counterexample(claim: Cmp, letter: str, domain: Domain) -> Numbers | None:
+def simple_counterexample(claim: Cmp, letter: str, domain: DomainOracle) -> Numbers | None:
     """Return the first simple numbers in the domain at which a claim is broken, or None."""
     placed = _candidates(claim, letter, domain, domain.point(NEVER, names(claim)))
     return next((numbers for numbers in placed if domain.breaks(claim, numbers)), None)
 
 
 def _candidates(
-    claim: Cmp, letter: str, domain: Domain, point: Numbers | None
+    claim: Cmp, letter: str, domain: DomainOracle, point: Numbers | None
 ) -> Iterator[Numbers]:
     """Yield points with simple values of the letter; where it is tied to states, by the solver."""
     if point is None:
@@ -196,12 +196,12 @@ def _candidates(
         yield from () if found is None else (found,)
 
 
-def _tied(letter: str, domain: Domain) -> bool:
+def _tied(letter: str, domain: DomainOracle) -> bool:
     return any(c.op == "=" for c in connected(domain.where, {letter}))
 
 
 def moved_counterexample(
-    claim: Cmp, letter: str, domain: Domain, own: Numbers | None = None
+    claim: Cmp, letter: str, domain: DomainOracle, own: Numbers | None = None
 ) -> Numbers | None:
     """Return numbers that break a claim: the domain's simplest, or `own`, one parameter moved.
 

@@ -14,7 +14,7 @@ from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.exact_eval import all_hold
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.asked import Domain, simple_counterexample
+from piezo_sym.proofs.asked import DomainOracle, simple_counterexample
 from piezo_sym.proofs.conditions import domain_conditions, in_words
 from piezo_sym.proofs.continuity import neighbour_questions
 from piezo_sym.proofs.domain import rounded_points, spec_points
@@ -136,7 +136,7 @@ def _by_numbers(obligation: Obligation, solver: SolverLike) -> Finding | None:
     """Return the refutation of a claim by simple numbers, or None."""
     question = obligation.questions[0]
     conditions = question.where[: len(question.where) - len(question.branch)]
-    domain = Domain(conditions, question.order, solver)
+    domain = DomainOracle(conditions, question.order, solver)
     numbers = simple_counterexample(question.original, obligation.letter, domain)
     return refutation(question, numbers) if numbers else None
 

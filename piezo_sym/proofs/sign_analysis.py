@@ -17,7 +17,12 @@ from typing import final
 
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.tree import ONE, ZERO, Add, Cmp, Expr, If, Mul, Neg, Num, Sym, names
-from piezo_sym.proofs.asked import Domain, Numbers, moved_counterexample, simple_counterexample
+from piezo_sym.proofs.asked import (
+    DomainOracle,
+    Numbers,
+    moved_counterexample,
+    simple_counterexample,
+)
 from piezo_sym.proofs.branches import opposite
 from piezo_sym.proofs.obligations import SignOf
 from piezo_sym.proofs.signs.cases import balanced, cases, choice_outside, grouped, summands
@@ -51,7 +56,7 @@ def whole_sign(
     One is also looked for near the spec's `own` values, of which none need be zero.
     """
     claim = Cmp(">=", mul(sign.law, Sym(sign.letter)), ZERO)
-    domain = Domain(sign.where, order, solver)
+    domain = DomainOracle(sign.where, order, solver)
     if numbers := simple_counterexample(claim, sign.letter, domain):
         return Outcome(Verdict.REFUTED, numbers)
     split = cases(sign.law, sign.letter, domain.positive)
@@ -84,7 +89,7 @@ class Search:
     #: law, letter: the law of one case, and its letter.
     law: Expr
     letter: str
-    domain: Domain  # the domain with the guards of the case
+    domain: DomainOracle  # the domain with the guards of the case
     #: Why functions f are left open, filled by the search.
     reasons: list[str] = field(default_factory=list)
     #: Reduced laws of the wrong sign: the reduction, its sign, and a value of s.

@@ -49,7 +49,7 @@ _LEFT_OUT = (
     r"#if defined\(COSTATES\).*?#endif /\* COSTATES \*/\n\n?",
 )
 #: What few models need: kinks in energies, and path functionals; a step says so.
-_PARTS = {"BENDS": ("bends.c",), "PATHS": ("way.c", "stop.c", "paths.c")}
+_PARTS = {"BENDS": ("bends.c",), "PATHS": ("coordinate.c", "stop.c", "paths.c")}
 #: How the slope of a function is spelled.
 _SLOPE = Style(
     lambda value: (repr(float(value)), ATOM),

@@ -14,8 +14,8 @@ typedef struct {
     mask turns, rises;
 } MODEL(course);
 
-/* The course of a coordinate, whose ways are given in each lane of a number. */
-static MODEL(course) MODEL(course_of)(MODEL(way) *w, real h)
+/* The course of a coordinate, given in each lane of a number. */
+static MODEL(course) MODEL(course_of)(MODEL(coordinate) *w, real h)
 {
     MODEL(course) c = {.h = h, .least = zero, .largest = zero};
     real pieces = zero;
@@ -75,7 +75,7 @@ static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c,
 }
 
 /* Compute stops of one coordinate, lanes `which` of a bank, in one lane of numbers. */
-static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, MODEL(stops) *s, const long *which,
+static void MODEL(along_path)(const MODEL(block) *m, MODEL(coordinate) *w, MODEL(stops) *s, const long *which,
                               long lanes, int lane, const real *z, const real *parameter, real *given,
                               real *rates)
 {
@@ -96,7 +96,7 @@ static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, MODEL(stops)
 }
 
 /* The same for those of a bank's lanes that are not in closed form: their share is negative. */
-static void MODEL(along_others)(const MODEL(block) *m, MODEL(way) *w, long lanes, int lane,
+static void MODEL(along_others)(const MODEL(block) *m, MODEL(coordinate) *w, long lanes, int lane,
                                 const real *z, const real *parameter, real *given, real *rates)
 {
     const real *const share = given + SHARE * lanes;
@@ -120,15 +120,15 @@ static void MODEL(along_others)(const MODEL(block) *m, MODEL(way) *w, long lanes
     }
 }
 
-/* Each lane of a bank by itself, from drive number `drive` on: each has a way of its own if `own`. */
-static void MODEL(along_each)(const MODEL(block) *m, MODEL(way) *w, long drive, int own, long lanes,
+/* Each lane of a bank by itself, from drive number `drive` on: each has a coordinate of its own if `own`. */
+static void MODEL(along_each)(const MODEL(block) *m, MODEL(coordinate) *w, long drive, int own, long lanes,
                               int lane, const real *z, const real *parameter, real *given, real *rates)
 {
     MODEL(stops) one;
     one.count = 1;
     for (long j = 0; j < lanes; ++j) {
         if (j && own)
-            MODEL(find_way)(m, w->h, drive + j, lane, w);
+            MODEL(find_coordinate)(m, w->h, drive + j, lane, w);
         MODEL(along_path)(m, w, &one, &j, lanes, lane, z, parameter, given, rates);
     }
 }
@@ -161,9 +161,9 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
         const real *const z = m->x + first;
         real *const rates = m->rates + first;
         const int together = !path[OWN] && lanes > 1;
-        MODEL(way) w[REAL_WIDTH];
+        MODEL(coordinate) w[REAL_WIDTH];
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            MODEL(find_way)(m, OF(h, lane), drive, lane, w + lane);
+            MODEL(find_coordinate)(m, OF(h, lane), drive, lane, w + lane);
             w[lane].yields = LANE(m->yield, EARLIEST, lane);
             w[lane].times = LANE(m->yield, HOW_OFTEN, lane);
         }
@@ -172,13 +172,13 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
             MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
         }
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            MODEL(way) *const way = w + lane;
+            MODEL(coordinate) *const coordinate = w + lane;
             if (together)
-                MODEL(along_others)(m, way, lanes, lane, z, parameter, given, rates);
+                MODEL(along_others)(m, coordinate, lanes, lane, z, parameter, given, rates);
             else
-                MODEL(along_each)(m, way, drive, path[OWN], lanes, lane, z, parameter, given, rates);
-            LANE(m->yield, EARLIEST, lane) = way->yields;
-            LANE(m->yield, HOW_OFTEN, lane) = way->times;
+                MODEL(along_each)(m, coordinate, drive, path[OWN], lanes, lane, z, parameter, given, rates);
+            LANE(m->yield, EARLIEST, lane) = coordinate->yields;
+            LANE(m->yield, HOW_OFTEN, lane) = coordinate->times;
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
         drive += path[OWN] ? lanes : 1;

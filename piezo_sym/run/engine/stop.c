@@ -1,6 +1,6 @@
 /*
  * A path functional: what an element with an inner state z does while its coordinate C, whose rates
- * at the stages are its drive, follows a polynomial. Comes after way.c.
+ * at the stages are its drive, follows a polynomial. Comes after coordinate.c.
  *
  * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of the slip's rate
  * dC/dt - dz/dt and of the heat. So h sum_i b_i F_i C'_i is the work int F dC, and z ends where its
@@ -41,7 +41,7 @@ typedef struct {
  * The piece's part up to which z follows C: to the end, or to where C reaches what is left to the
  * limit. By Newton's method and bisection, in all lanes as long as one of them moves.
  */
-static void MODEL(find_limits)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+static void MODEL(find_limits)(const MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
     double low[SOME], high[SOME], moving = 0.0;
     for (long j = 0; j < s->count; ++j) {
@@ -81,7 +81,7 @@ static void MODEL(find_limits)(const MODEL(way) *w, const MODEL(piece) *piece, M
  * Integrals of the stages' weights over that part, and of these times the rate of C, are in `lead`
  * and `moved`. Exact: all integrands are of degree < 2s.
  */
-static void MODEL(add_following)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+static void MODEL(add_following)(const MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
     memset(s->lead, 0, sizeof s->lead);
     memset(s->moved, 0, sizeof s->moved);
@@ -104,7 +104,7 @@ static void MODEL(add_following)(const MODEL(way) *w, const MODEL(piece) *piece,
 }
 
 /* Add the means of the piece's rest, in which z stays at its limit: all but the part before. */
-static void MODEL(add_yielding)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+static void MODEL(add_yielding)(const MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
     const double length = piece->high - piece->low;
     for (long i = 0; i < STAGES; ++i) {
@@ -129,7 +129,7 @@ static void MODEL(add_yielding)(const MODEL(way) *w, const MODEL(piece) *piece, 
 }
 
 /* Take stops to the end of a piece, and note where they begin, or cease, to yield. */
-static void MODEL(pass)(MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+static void MODEL(pass)(MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
     double first = w->yields, times = 0.0;
 #pragma omp simd reduction(+ : times) reduction(min : first)
@@ -154,7 +154,7 @@ static void MODEL(pass)(MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *
  * Let the means add up to all of the slip and all of the heat. A stage's mean of the heat may be
  * negative: it becomes 0, the others are scaled to the total.
  */
-static void MODEL(settle)(const MODEL(way) *w, MODEL(stops) *s)
+static void MODEL(settle)(const MODEL(coordinate) *w, MODEL(stops) *s)
 {
     const double gone = MODEL(polynomial)(w->gone, STAGES, 1.0);
 #pragma omp simd
@@ -181,7 +181,7 @@ static void MODEL(settle)(const MODEL(way) *w, MODEL(stops) *s)
 /*
  * Stop elements: F = k z; z follows C, but stays at -r or r while C goes further.
  */
-static void MODEL(stop)(MODEL(way) *w, MODEL(stops) *s)
+static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
 {
     memset(s->mean, 0, sizeof s->mean);
     for (long j = 0; j < s->count; ++j) {

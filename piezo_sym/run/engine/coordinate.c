@@ -1,19 +1,18 @@
 /*
- * The way of a coordinate C in a step, whose rates at the stages are the drive of path functionals.
+ * The path of a coordinate C in a step, whose rates at the stages are the drive of path functionals.
  * Comes after gauss.c, for models that have PATHS.
  */
 
 /*
- * The path of a coordinate in a step: the coefficients of C(tau) - C(0) and of dC/dtau; its change
- * up to each stage and its rate there; a bound on |C(tau) - C(0)|. C is monotonic between turn[k]
- * and turn[k + 1]. `yields` is the first part of the step where z begins, or ceases, to yield, as it
- * does `times` times.
+ * The coefficients of C(tau) - C(0) and of dC/dtau; its change up to each stage and its rate there; a
+ * bound on |C(tau) - C(0)|. C is monotonic between turn[k] and turn[k + 1]. `yields` is the first part
+ * of the step where z begins, or ceases, to yield, as it does `times` times.
  */
 typedef struct {
     double gone[STAGES + 1], speed[STAGES], at_stage[STAGES], rate[STAGES], turn[STAGES + 1];
     double h, most, yields, times;
     long pieces;
-} MODEL(way);
+} MODEL(coordinate);
 
 static double MODEL(polynomial)(const double *a, long degree, double at)
 {
@@ -52,7 +51,7 @@ static double MODEL(meets)(const double *a, long degree, double value, double lo
 }
 
 /* Find where a coordinate turns: zeros of its speed lie between those of the speed's derivative. */
-static void MODEL(find_turns)(MODEL(way) *w)
+static void MODEL(find_turns)(MODEL(coordinate) *w)
 {
     w->turn[0] = 0.0, w->turn[1] = 1.0, w->pieces = 1;
     for (long order = STAGES - 2; order >= 0; --order) {
@@ -77,7 +76,7 @@ static void MODEL(find_turns)(MODEL(way) *w)
 }
 
 /* The path of a coordinate that has drive number i, in one lane's step. */
-static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, MODEL(way) *w)
+static void MODEL(find_coordinate)(const MODEL(block) *m, double h, long i, int lane, MODEL(coordinate) *w)
 {
     double square = 0.0;
     (void)lane; /* a number has no lanes */
