@@ -106,7 +106,7 @@ def test_a_damaged_template_is_made_again(spec, cache):
     spec["model"]["name"] = "mine"
     path = written(spec)
     module_of(path)
-    (template,) = cache.rglob("*.json")
+    (template,) = cache.rglob("*-shape/record.json")
     template.write_text(template.read_text().replace("mine", "mime", 3))
     edited(path, "0.0035", "0.0036")
     assert module_of(path).Parameters().M == 0.0036
