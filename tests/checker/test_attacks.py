@@ -121,6 +121,7 @@ FORGERIES = {
 }
 
 
+@pytest.mark.some(10)
 @pytest.mark.parametrize("name", FORGERIES)
 def test_a_forged_system_is_not_that_of_the_network(name):
     proofs = stated(PIEZO_STACK)

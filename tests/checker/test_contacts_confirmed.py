@@ -72,6 +72,7 @@ def test_its_energy_is_the_integral_of_the_force(law, n):
         assert rise == pytest.approx(1e4 * quad(FORCES[law], a, b, args=(n,), points=[0.0])[0])
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize(
     ("law", "domain", "values"),
     [

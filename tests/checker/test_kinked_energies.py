@@ -40,7 +40,7 @@ def test_a_spec_with_an_energy_of_saturate_is_read():
     assert ("welldef", "spring") not in rows
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(("law", "old", "new"), WRONG)
 def test_an_energy_changed_on_one_side_is_not_confirmed(law, old, new):
     text = TEXT.replace("LAW", law)

@@ -87,7 +87,7 @@ REFUTED = {
 }
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", REFUTED)
 def test_the_conditions_that_mend_a_row_do(name):
     text = REFUTED[name]

@@ -21,7 +21,7 @@ def tables(stages, nodes):
     return found
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("stages", [1, 2, 3, 4, 5])
 def test_simplifying_assumptions(stages):
     """B(2s): the weights integrate degree 2s - 1.  C(s): each stage degree s - 1 (Butcher)."""
@@ -86,6 +86,7 @@ def integrals(nodes, upto):
     return found
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("stages", [1, 2, 3, 4, 5])
 def test_printed_numbers_are_those_of_gauss_to_the_last_digit(stages):
     """Nodes and weights by SymPy, in 40 digits; the others from their definitions."""

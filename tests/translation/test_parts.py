@@ -104,7 +104,7 @@ MUTANTS = {
 }
 
 
-@pytest.mark.some(6)
+@pytest.mark.some(3)
 @pytest.mark.parametrize("mutant", MUTANTS)
 def test_a_wrong_call_of_a_part_is_not_proved(stack, mutant):
     old, new = MUTANTS[mutant]
