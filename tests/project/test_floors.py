@@ -65,7 +65,7 @@ def floor(tower: tuple[set[str], ...], name: str) -> int:
 
 
 def may_import(upper: str, lower: str) -> bool:
-    """Return whether a stage may import another: itself, what is below; files and reports may use errors."""
+    """Return whether a stage may import another: itself, or what is below; some may use errors."""
     peer = (upper, lower) in {("files", "errors"), ("report", "errors")}
     towers = (PROVING, RUNNING)
     below = (floor(tower, upper) > floor(tower, lower) >= 0 for tower in towers)
