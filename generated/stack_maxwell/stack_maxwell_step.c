@@ -828,21 +828,20 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
 }
 
 /*
- * The way of a coordinate C in a step, whose rates at the stages are the drive of path functionals.
+ * The path of a coordinate C in a step, whose rates at the stages are the drive of path functionals.
  * Comes after gauss.c, for models that have PATHS.
  */
 
 /*
- * The path of a coordinate in a step: the coefficients of C(tau) - C(0) and of dC/dtau; its change
- * up to each stage and its rate there; a bound on |C(tau) - C(0)|. C is monotonic between turn[k]
- * and turn[k + 1]. `yields` is the first part of the step where z begins, or ceases, to yield, as it
- * does `times` times.
+ * The coefficients of C(tau) - C(0) and of dC/dtau; its change up to each stage and its rate there; a
+ * bound on |C(tau) - C(0)|. C is monotonic between turn[k] and turn[k + 1]. `yields` is the first part
+ * of the step where z begins, or ceases, to yield, as it does `times` times.
  */
 typedef struct {
     double gone[STAGES + 1], speed[STAGES], at_stage[STAGES], rate[STAGES], turn[STAGES + 1];
     double h, most, yields, times;
     long pieces;
-} MODEL(way);
+} MODEL(coordinate);
 
 static double MODEL(polynomial)(const double *a, long degree, double at)
 {
@@ -881,7 +880,7 @@ static double MODEL(meets)(const double *a, long degree, double value, double lo
 }
 
 /* Find where a coordinate turns: zeros of its speed lie between those of the speed's derivative. */
-static void MODEL(find_turns)(MODEL(way) *w)
+static void MODEL(find_turns)(MODEL(coordinate) *w)
 {
     w->turn[0] = 0.0, w->turn[1] = 1.0, w->pieces = 1;
     for (long order = STAGES - 2; order >= 0; --order) {
@@ -906,7 +905,7 @@ static void MODEL(find_turns)(MODEL(way) *w)
 }
 
 /* The path of a coordinate that has drive number i, in one lane's step. */
-static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, MODEL(way) *w)
+static void MODEL(find_coordinate)(const MODEL(block) *m, double h, long i, int lane, MODEL(coordinate) *w)
 {
     double square = 0.0;
     (void)lane; /* a number has no lanes */
@@ -932,7 +931,7 @@ static void MODEL(find_way)(const MODEL(block) *m, double h, long i, int lane, M
 
 /*
  * A path functional: what an element with an inner state z does while its coordinate C, whose rates
- * at the stages are its drive, follows a polynomial. Comes after way.c.
+ * at the stages are its drive, follows a polynomial. Comes after coordinate.c.
  *
  * Stage i is given the means int_0^1 (l_i/b_i) ... dtau of the effort F, of the slip's rate
  * dC/dt - dz/dt and of the heat. So h sum_i b_i F_i C'_i is the work int F dC, and z ends where its
@@ -973,7 +972,7 @@ typedef struct {
  * The piece's part up to which z follows C: to the end, or to where C reaches what is left to the
  * limit. By Newton's method and bisection, in all lanes as long as one of them moves.
  */
-static void MODEL(find_limits)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+static void MODEL(find_limits)(const MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
     double low[SOME], high[SOME], moving = 0.0;
     for (long j = 0; j < s->count; ++j) {
@@ -1013,7 +1012,7 @@ static void MODEL(find_limits)(const MODEL(way) *w, const MODEL(piece) *piece, M
  * Integrals of the stages' weights over that part, and of these times the rate of C, are in `lead`
  * and `moved`. Exact: all integrands are of degree < 2s.
  */
-static void MODEL(add_following)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+static void MODEL(add_following)(const MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
     memset(s->lead, 0, sizeof s->lead);
     memset(s->moved, 0, sizeof s->moved);
@@ -1036,7 +1035,7 @@ static void MODEL(add_following)(const MODEL(way) *w, const MODEL(piece) *piece,
 }
 
 /* Add the means of the piece's rest, in which z stays at its limit: all but the part before. */
-static void MODEL(add_yielding)(const MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+static void MODEL(add_yielding)(const MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
     const double length = piece->high - piece->low;
     for (long i = 0; i < STAGES; ++i) {
@@ -1061,7 +1060,7 @@ static void MODEL(add_yielding)(const MODEL(way) *w, const MODEL(piece) *piece, 
 }
 
 /* Take stops to the end of a piece, and note where they begin, or cease, to yield. */
-static void MODEL(pass)(MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *s)
+static void MODEL(pass)(MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
     double first = w->yields, times = 0.0;
 #pragma omp simd reduction(+ : times) reduction(min : first)
@@ -1086,7 +1085,7 @@ static void MODEL(pass)(MODEL(way) *w, const MODEL(piece) *piece, MODEL(stops) *
  * Let the means add up to all of the slip and all of the heat. A stage's mean of the heat may be
  * negative: it becomes 0, the others are scaled to the total.
  */
-static void MODEL(settle)(const MODEL(way) *w, MODEL(stops) *s)
+static void MODEL(settle)(const MODEL(coordinate) *w, MODEL(stops) *s)
 {
     const double gone = MODEL(polynomial)(w->gone, STAGES, 1.0);
 #pragma omp simd
@@ -1110,7 +1109,7 @@ static void MODEL(settle)(const MODEL(way) *w, MODEL(stops) *s)
 /*
  * Stop elements: F = k z; z follows C, but stays at -r or r while C goes further.
  */
-static void MODEL(stop)(MODEL(way) *w, MODEL(stops) *s)
+static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
 {
     memset(s->mean, 0, sizeof s->mean);
     for (long j = 0; j < s->count; ++j) {
@@ -1151,8 +1150,8 @@ typedef struct {
     mask turns, rises;
 } MODEL(course);
 
-/* The course of a coordinate, whose ways are given in each lane of a number. */
-static MODEL(course) MODEL(course_of)(MODEL(way) *w, real h)
+/* The course of a coordinate, given in each lane of a number. */
+static MODEL(course) MODEL(course_of)(MODEL(coordinate) *w, real h)
 {
     MODEL(course) c = {.h = h, .least = zero, .largest = zero};
     real pieces = zero;
@@ -1212,7 +1211,7 @@ static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c,
 }
 
 /* Compute stops of one coordinate, lanes `which` of a bank, in one lane of numbers. */
-static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, MODEL(stops) *s, const long *which,
+static void MODEL(along_path)(const MODEL(block) *m, MODEL(coordinate) *w, MODEL(stops) *s, const long *which,
                               long lanes, int lane, const real *z, const real *parameter, real *given,
                               real *rates)
 {
@@ -1233,7 +1232,7 @@ static void MODEL(along_path)(const MODEL(block) *m, MODEL(way) *w, MODEL(stops)
 }
 
 /* The same for those of a bank's lanes that are not in closed form: their share is negative. */
-static void MODEL(along_others)(const MODEL(block) *m, MODEL(way) *w, long lanes, int lane,
+static void MODEL(along_others)(const MODEL(block) *m, MODEL(coordinate) *w, long lanes, int lane,
                                 const real *z, const real *parameter, real *given, real *rates)
 {
     const real *const share = given + SHARE * lanes;
@@ -1257,15 +1256,15 @@ static void MODEL(along_others)(const MODEL(block) *m, MODEL(way) *w, long lanes
     }
 }
 
-/* Each lane of a bank by itself, from drive number `drive` on: each has a way of its own if `own`. */
-static void MODEL(along_each)(const MODEL(block) *m, MODEL(way) *w, long drive, int own, long lanes,
+/* Each lane of a bank by itself, from drive number `drive` on: each has a coordinate of its own if `own`. */
+static void MODEL(along_each)(const MODEL(block) *m, MODEL(coordinate) *w, long drive, int own, long lanes,
                               int lane, const real *z, const real *parameter, real *given, real *rates)
 {
     MODEL(stops) one;
     one.count = 1;
     for (long j = 0; j < lanes; ++j) {
         if (j && own)
-            MODEL(find_way)(m, w->h, drive + j, lane, w);
+            MODEL(find_coordinate)(m, w->h, drive + j, lane, w);
         MODEL(along_path)(m, w, &one, &j, lanes, lane, z, parameter, given, rates);
     }
 }
@@ -1298,9 +1297,9 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
         const real *const z = m->x + first;
         real *const rates = m->rates + first;
         const int together = !path[OWN] && lanes > 1;
-        MODEL(way) w[REAL_WIDTH];
+        MODEL(coordinate) w[REAL_WIDTH];
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            MODEL(find_way)(m, OF(h, lane), drive, lane, w + lane);
+            MODEL(find_coordinate)(m, OF(h, lane), drive, lane, w + lane);
             w[lane].yields = LANE(m->yield, EARLIEST, lane);
             w[lane].times = LANE(m->yield, HOW_OFTEN, lane);
         }
@@ -1309,13 +1308,13 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
             MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
         }
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            MODEL(way) *const way = w + lane;
+            MODEL(coordinate) *const coordinate = w + lane;
             if (together)
-                MODEL(along_others)(m, way, lanes, lane, z, parameter, given, rates);
+                MODEL(along_others)(m, coordinate, lanes, lane, z, parameter, given, rates);
             else
-                MODEL(along_each)(m, way, drive, path[OWN], lanes, lane, z, parameter, given, rates);
-            LANE(m->yield, EARLIEST, lane) = way->yields;
-            LANE(m->yield, HOW_OFTEN, lane) = way->times;
+                MODEL(along_each)(m, coordinate, drive, path[OWN], lanes, lane, z, parameter, given, rates);
+            LANE(m->yield, EARLIEST, lane) = coordinate->yields;
+            LANE(m->yield, HOW_OFTEN, lane) = coordinate->times;
         }
         given += GIVEN * lanes, parameter += PARAMETERS * lanes;
         drive += path[OWN] ? lanes : 1;
