@@ -59,7 +59,7 @@ class Model(Tables):
         try:
             super().__init__(**Reader().complete(tables))
         except ValidationError as error:
-            raise all_problems(error) from None
+            raise all_problems(error, tables) from None
 
     @model_validator(mode="after")
     def _checked(self) -> Model:

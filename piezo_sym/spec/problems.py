@@ -37,14 +37,19 @@ FIRST = ("extra_forbidden", "missing")
 MOST_FAULTS = 20
 
 
-def all_problems(error: ValidationError) -> SpecError:
-    """Return pydantic's errors as a `SpecError` of the first; the others are its notes."""
+def all_problems(error: ValidationError, spec: Mapping[str, Any]) -> SpecError:
+    """Return pydantic's errors on a spec as a `SpecError`; all but the first are its notes."""
     details = error.errors(include_url=False)
     place = {kind: n for n, kind in enumerate(FIRST)}
     details.sort(key=lambda detail: place.get(detail["type"], len(FIRST)))
     # a key is missing only because it stands there under a misspelled name
-    meant = {(*d["loc"][:-1], _meant_key(d)) for d in details if d["type"] == FIRST[0]}
-    found = (_problem(d) for d in details if d["type"] != "missing" or d["loc"] not in meant)
+    unknown = [d for d in details if d["type"] == FIRST[0]]
+    meant = {(*d["loc"][:-1], _meant_key(d, _left(d, spec))) for d in unknown}
+    found = (
+        _unknown_key(d, _left(d, spec)) if d["type"] == FIRST[0] else _problem(d)
+        for d in details
+        if d["type"] != "missing" or d["loc"] not in meant
+    )
     problem, *others = {str(fault): fault for fault in found}.values()
     for other in others[: MOST_FAULTS - 1]:
         problem.add_note(str(other))
@@ -53,30 +58,46 @@ def all_problems(error: ValidationError) -> SpecError:
     return problem
 
 
-def _meant_key(detail: ErrorDetails) -> str:
+def _left(detail: ErrorDetails, spec: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the known keys of the table of an unknown one, without those that it has."""
+    known = _known([str(part) for part in detail["loc"]])
+    table: Any = spec
+    for part in detail["loc"][:-1]:  # pydantic names the kind of an element, too
+        table = table.get(part, table) if isinstance(table, Mapping) else {}
+    return tuple(key for key in known if key not in table) or known
+
+
+def _meant_key(detail: ErrorDetails, known: Iterable[str]) -> str:
     """Return the known key that an unknown one may be meant for, or ''."""
-    place = [str(part) for part in detail["loc"]]
-    known, key = _known(place), place[-1]
+    key = str(detail["loc"][-1])
     other = next((node for node in NODES if node in known and key in NODES), "")
     return other or similar(key, known)
 
 
-def _problem(detail: ErrorDetails) -> SpecError:
+def _unknown_key(detail: ErrorDetails, known: Iterable[str]) -> SpecError:
+    key, meant = str(detail["loc"][-1]), _meant_key(detail, known)
+    remedy = nearest(key, known)
+    if key in NODES and meant in NODES:
+        remedy = f"did you mean '{meant}'? {NODES[meant]}"
+    return SpecError(f"unknown key {quote(key)}", _where(detail), remedy=remedy)
+
+
+def _where(detail: ErrorDetails) -> str:
+    """Return the dotted path of what a detail is about."""
     place = [str(part) for part in detail["loc"]]
-    known = _known(place)
     if "elements" in place[:3:2] and len(place) > (at := place.index("elements") + 2):
         del place[at]  # pydantic names the kind here
-    where = ".".join(place) or "spec"
+    return ".".join(place) or "spec"
+
+
+def _problem(detail: ErrorDetails) -> SpecError:
+    place = [str(part) for part in detail["loc"]]
+    known, where = _known(place), _where(detail)
     value = detail.get("input")
     match detail["type"]:
-        case "extra_forbidden":
-            remedy, meant = nearest(place[-1], known), _meant_key(detail)
-            if place[-1] in NODES and meant in NODES:
-                remedy = f"did you mean '{meant}'? {NODES[meant]}"
-            return SpecError(f"unknown key {quote(place[-1])}", where, remedy=remedy)
         case "missing" if isinstance(detail["loc"][-1], int):
             entries = "1 entry is given" if len(value) == 1 else "no entry is given"
-            return SpecError(entries, ".".join(place[:-1]), "two names, such as ['a', 'b']")
+            return SpecError(entries, where.rpartition(".")[0], "two names, such as ['a', 'b']")
         case "missing":
             return SpecError("is missing", where, remedy=_missing(place[-1], known))
         case "union_tag_invalid":
@@ -121,7 +142,7 @@ def _expected(detail: ErrorDetails) -> str:
     return message[:1].lower() + message[1:]
 
 
-def _known(place: list[str]) -> Iterable[str]:
+def _known(place: list[str]) -> tuple[str, ...]:
     """Return the keys of the table in which `place` stands."""
     kind: Any = Tables
     if "elements" in place[:3:2] and len(place) > (at := place.index("elements") + 2):

@@ -251,3 +251,10 @@ def test_a_state_in_its_own_law_goes_by_its_letter():
     renamed = ('state = "q"', 'state = "x"')
     message = refused_edit(renamed, ('"k"', '"k*exp(x/q_l)"'))
     assert message.endswith("a law writes the state of its element as its letter, 'q'")
+
+
+def test_a_misspelled_key_is_not_taken_for_one_that_the_element_has():
+    more = 'electrical = ["a", "b"]\nmechnical = ["c", "d"]\nconstant = "k"\n'
+    text = SHIPPED + f'\n[elements.motor]\nkind = "motor"\n{more}'
+    message = refusal(parse, text).lines()[0]
+    assert message.endswith("unknown key 'mechnical'; known: translation, rotation")
