@@ -51,17 +51,12 @@ def started() -> None:
     _examiner().start()
 
 
-def examined(iphs: IPHS) -> Report:
-    """Return the report on a system, made in the process of this interpreter."""
-    return _report(iphs, iphs.model, Future())
-
-
-def examined_model(model: Model) -> Report:
-    """Return the report on a model, derived and made in the process of this interpreter.
+def examined(subject: IPHS | Model) -> Report:
+    """Return the report on a system, or on a model, made in the process of this interpreter.
 
     Raises `NetworkError` or `SpecError` if the model cannot be derived.
     """
-    return _report(model, model, Future())
+    return _report(subject, Future())
 
 
 @final
@@ -69,7 +64,7 @@ def examined_model(model: Model) -> Report:
 class Examination:
     """What is being found of a model: who asks for it waits.
 
-    What `examined_model` raises is raised by either; `template` raises a `ProofError` if the
+    What `examined` raises is raised by either; `template` raises a `ProofError` if the
     process ended before it had the texts of the module.
     """
 
@@ -93,7 +88,7 @@ def examining(model: Model) -> Iterator[Examination]:
 
     def examine() -> None:
         try:
-            report = _report(model, model, texts)
+            report = _report(model, texts)
             verdicts.set_result(report)
             report.raise_if_not_proved()
         except BaseException as error:  # raised again where something is asked for
@@ -110,11 +105,13 @@ def examining(model: Model) -> Iterator[Examination]:
         raise
 
 
-def _report(subject: IPHS | Model, model: Model, texts: Future[Template]) -> Report:
+def _report(subject: IPHS | Model, texts: Future[Template]) -> Report:
     """Return the report on a system; the texts of its module are set when they are known."""
     started()
+    from piezo_sym.spec.model import Model
     from piezo_sym.verification.record import Record  # meanwhile
 
+    model = subject if isinstance(subject, Model) else subject.model
     limit = PATIENCE + MORE_PATIENCE * max(0, len(model.elements) - SMALL)
     record, ends = Record(model.name, limit), monotonic() + limit
     while True:

@@ -86,8 +86,7 @@ def test_both_laws_close_to_round_off_for_every_exponent(n, rtol):
 
 def test_every_row_of_the_oscillator_is_proved():
     verdicts = {
-        (row.id, row.element): row.verdict.value
-        for row in process.examined_model(parse(OSCILLATOR)).rows
+        (row.id, row.element): row.verdict.value for row in process.examined(parse(OSCILLATOR)).rows
     }
     assert set(verdicts.values()) == {"PROVED"}
     assert verdicts.keys() >= {

@@ -96,7 +96,7 @@ def balanced(run):
 @pytest.mark.some(3)
 @pytest.mark.parametrize("name", ["led", "mass", "coil", "charged"])
 def test_every_row_is_proved(name):
-    rows = {(row.id, row.element): row.verdict for row in process.examined_model(model(name)).rows}
+    rows = {(row.id, row.element): row.verdict for row in process.examined(model(name)).rows}
     assert rows["passive", "stop"] is rows["rate-independent", "stop"] is Verdict.PROVED
     assert set(rows.values()) == {Verdict.PROVED}
 

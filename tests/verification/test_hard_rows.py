@@ -10,7 +10,7 @@ from piezo_sym.processes import Worker
 from piezo_sym.proofs import Verdict
 from piezo_sym.verification import examine, process
 from piezo_sym.verification.examine import ATTACKED, examined
-from piezo_sym.verification.process import answer, examined_model
+from piezo_sym.verification.process import answer
 from piezo_sym.verification.protocol import OVERDUE, Progress, Request
 from piezo_sym.verification.record import Record
 
@@ -62,7 +62,7 @@ def verdicts(report):
 def test_the_others_are_decided(worker, stage):
     row = "(obligation.id, obligation.element)" if stage == "proving" else "row"
     worker(**{stage: f"{row} == {DAMPER} and {ENDS}"})
-    report = examined_model(load("piezo_stack"))
+    report = process.examined(load("piezo_stack"))
     found = verdicts(report)
     assert {key for key, verdict in found.items() if verdict is not Verdict.PROVED} == {
         DAMPER,
@@ -78,7 +78,7 @@ def test_the_others_are_decided(worker, stage):
 @pytest.mark.long
 def test_of_two_hard_rows_each_is_named(worker):
     worker(attacking=f"row in {(DAMPER, HYSTERON)} and {ENDS}")
-    report = examined_model(load("piezo_stack"))
+    report = process.examined(load("piezo_stack"))
     left = {row.name for row in report.rows if "its share" in row.reason}
     assert left == {"passive of damper", "passive of hysteron"}
     assert verdicts(report)["program", ""] is Verdict.PROVED
@@ -89,7 +89,7 @@ def test_a_row_that_takes_more_than_its_share_gets_what_is_left(worker, tmp_path
     once = f"Path({str(tmp_path / 'seen')!r})"
     hangs = f"row == {DAMPER} and not {once}.exists() and ({once}.touch(), 3**10**10)"
     worker(attacking=hangs, share=0.1)
-    assert examined_model(load("piezo_stack")).proved
+    assert process.examined(load("piezo_stack")).proved
     assert (tmp_path / "seen").exists()
 
 

@@ -19,7 +19,7 @@ from piezo_sym.proofs import Report, Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.values import Template
 from piezo_sym.verification import examine, process
-from piezo_sym.verification.process import answer, examined_model, examining, messages
+from piezo_sym.verification.process import answer, examined, examining, messages
 from piezo_sym.verification.protocol import ENDED, OVERDUE, TOO_LARGE, Progress, Request
 from tests.proofs.test_false_proofs import MASS
 
@@ -49,7 +49,7 @@ def test_what_takes_too_long_is_stopped_and_the_next_one_is_answered(examiner):
 
 def test_what_is_not_decided_in_time_is_open(monkeypatch):
     monkeypatch.setattr(process, "PATIENCE", 0.01)
-    report = examined_model(load("oscillator"))
+    report = examined(load("oscillator"))
     assert not report.proved
     assert {row.verdict for row in report.rows} == {Verdict.OPEN}
     assert "not decided in 0.01 s" in report.rows[0].reason
@@ -87,7 +87,7 @@ def test_laws_that_once_hung_end(name):
     text = MASS.format(
         parameters=parameters, domain='"v_1 > 0", "F_1 > 0"', elements="", force=force
     )
-    report = examined_model(parse(text))
+    report = examined(parse(text))
     verdicts = {(row.id, row.element): row.verdict for row in report.rows}
     if force.startswith("-"):
         assert verdicts["passive", "damper"] is not Verdict.PROVED
@@ -184,7 +184,7 @@ def test_a_program_whose_reading_dies_is_open(monkeypatch):
     *first, last = answer(Request(load("piezo_stack"), 60.0))
     assert last == ENDED
     monkeypatch.setattr(process, "messages", lambda *_: iter((*first, last)))
-    rows = {row.id: row for row in examined_model(load("piezo_stack")).rows}
+    rows = {row.id: row for row in examined(load("piezo_stack")).rows}
     assert rows["program"].verdict is Verdict.OPEN
     assert ENDED.reason in rows["program"].reason
     assert rows["passive"].verdict is Verdict.PROVED  # it was attacked before
@@ -195,7 +195,7 @@ def test_texts_come_before_the_verdicts_on_them():
     with examining(model) as found:
         template, report = found.template(), found.report()
     assert template == template_of(derive(model))
-    assert report.rows == examined_model(model).rows
+    assert report.rows == examined(model).rows
 
 
 def test_texts_come_also_where_too_much_would_have_to_be_stated(monkeypatch):
@@ -234,7 +234,7 @@ def test_who_is_stopped_leaves_no_examination_behind():
         left = process._examiner().process.pid
         raise KeyboardInterrupt
     assert ended(left)
-    assert examined_model(load("oscillator")).proved
+    assert examined(load("oscillator")).proved
 
 
 def test_two_threads_may_close_a_process():
