@@ -7,27 +7,26 @@ Input: a `Model`.  Output: the files of its generated module, or a list of what 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, final
 
-from piezo_sym.errors import DriftError, PiezoError, ProofError, UsageError, quote
+from piezo_sym.errors import DriftError, ProofError, UsageError, quote
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
-from piezo_sym.module_cache import cache_files, cache_template, cached_files
+from piezo_sym.module_cache import keep_files, keep_template, kept_files, own_sources
 from piezo_sym.report import Report, Verdict, proofs_json, report_of, smt2
-from piezo_sym.spec.source import data, find, read, shipped
+from piezo_sym.spec.source import shipped
 from piezo_sym.spec.values import Template, shape_hash
-from piezo_sym.spec.write import spec_hash
-from piezo_sym.verification.process import examining, started
+from piezo_sym.verification.process import examining
 from piezo_sym.version import MADE
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
 
-#: The file of verdicts, below the folder of a model.
-PROOFS = "proofs.json"
+#: The path of the verdicts on a model of some name.
+PROOFS = "{}/proofs.json"
 MISSING, DIFFERS, ENDS = "is missing", "differs from its spec", "has other line ends than \\n"
 LINK, LEFT = "is no regular file or folder", "belongs to no spec given"
 
@@ -56,56 +55,61 @@ def shipped_models() -> tuple[Model, ...]:
     return tuple(load(name) for name in shipped())
 
 
-def start(specs: Iterable[str]) -> None:
-    """Start the process that examines specs while they are loaded, unless all are known as proved.
-
-    What is wrong with a spec, loading says.
-    """
-    with suppress(PiezoError):
-        if not all(cached_files(spec_hash(data(read(find(spec))))) for spec in specs):
-            started()
-
-
-def render(model: Model, *, allow_unproved: bool = False) -> dict[str, str]:
+def render(model: Model, *, allow_unproved: bool = False) -> Mapping[str, str]:
     """Return the text of each generated file of a model, by its path below the output folder.
 
     A model that is not proved is refused, unless `allow_unproved`.
     """
-    report, files = examined(model)
-    if not allow_unproved or f"{model.name}/{model.name}.py" not in files:
+    report, files = report_and_files(model)
+    if not (allow_unproved and f"{model.name}/{model.name}.py" in files):
         report.raise_if_not_proved()
     return files
 
 
-def examined(model: Model) -> tuple[Report, dict[str, str]]:
+def report_and_files(model: Model) -> tuple[Report, Mapping[str, str]]:
     """Return the verdicts on a model, and the text of each file that is generated of it.
 
-    What is proved is kept: the very same spec is not proved again. Where the time was too short to
+    What is proved is kept: the very same model is not proved again. Where the time was too short to
     print the module, there are only the files of verdicts.
     """
-    if files := cached_files(model.sha256):
-        return report_of(files[f"{model.name}/{PROOFS}"]), files
+    if (files := kept_files(model.key)) and PROOFS.format(model.name) in files:
+        return report_of(files[PROOFS.format(model.name)]), files
+    report, template = report_and_texts(model)
+    return report, files_of(model, report, template)
+
+
+def report_and_texts(
+    model: Model, meanwhile: Callable[[Template], AbstractContextManager[None]] | None = None
+) -> tuple[Report, Template | None]:
+    """Return the verdicts on a model, and its texts with them; both are kept if it is proved.
+
+    Without a template if the time was too short for its texts.
+
+    Parameters
+    ----------
+    meanwhile : what is done with the texts before the verdicts are known.
+    """
     template = None
     with examining(model) as found:
-        report = found.report()
         with suppress(ProofError):
-            template = finished(found.template(), model.name, report)
-    files = files_of(model, report, template)
-    if template and report.proved:
-        keep(model, template, files)
-    return report, files
+            template = _with_standalone_step(found.template(), model.name)
+        with meanwhile(template) if template and meanwhile else nullcontext():
+            report = found.report()
+    if template:
+        template = replace(template, verdict=verdict_line(report))
+        if report.proved and report.sources == own_sources():
+            keep_template(shape_hash(model.flatten().model_dump()), template)
+            if report.decided:
+                keep_files(model.key, files_of(model, report, template))
+    return report, template
 
 
-def finished(template: Template, model: str, report: Report | None = None) -> Template:
-    """Return the texts of a module as they are written.
-
-    Programs in C can take its step alone, and its head has the verdict, if that is known.
-    """
+def _with_standalone_step(made: Template, name: str) -> Template:
+    """Return the texts of a module as they are written: programs in C can take its step alone."""
     from piezo_sym.run.engine.c_sources import standalone_step
 
-    step = template.files["_step.c"]
-    files = {**template.files, "_step.c": step + standalone_step(model, step)}
-    return replace(template, files=files, verdict=verdict_line(report) if report else "")
+    step = made.files["_step.c"]
+    return replace(made, files={**made.files, "_step.c": step + standalone_step(name, step)})
 
 
 def files_of(model: Model, report: Report, template: Template | None) -> dict[str, str]:
@@ -113,15 +117,9 @@ def files_of(model: Model, report: Report, template: Template | None) -> dict[st
     texts = template.filled(model.flatten().model_dump()) if template else {}
     return {
         **{f"{model.name}/{model.name}{ending}": text for ending, text in texts.items()},
-        f"{model.name}/{PROOFS}": proofs_json(report, model, MADE),
+        PROOFS.format(model.name): proofs_json(report, model, MADE),
         f"{model.name}/proofs.smt2": smt2(report, MADE),
     }
-
-
-def keep(model: Model, template: Template, files: Mapping[str, str]) -> None:
-    """Keep what is proved of a model: its files, and texts for other values."""
-    cache_files(model.sha256, files)
-    cache_template(shape_hash(model.flatten().model_dump()), template)
 
 
 def verdict_line(report: Report) -> str:

@@ -1,7 +1,8 @@
 """The user's cache: generated modules, templates, and all files of what is proved; and a loader.
 
 Input: the hash of a spec or of its shape, and a module's name.  Output: a loaded module, a
-`Template`, or texts.  Each version of the package has its own cache.
+`Template`, or texts.  What was made by other sources of the package, or proved with other
+libraries, is not found.
 """
 
 import hashlib
@@ -19,12 +20,8 @@ from typing import Any
 from piezo_sym.errors import FileError
 from piezo_sym.files import path_text, read_text, temporary_folder, write_text, write_together
 from piezo_sym.spec.values import Template
-from piezo_sym.version import VERSION
+from piezo_sym.version import sources_hash
 
-PACKAGE = Path(__file__).parent
-#: Endings of the package's sources, and other packages that proofs rest on.
-SOURCES = (".py", ".c", ".h")
-PROVERS = ("sympy", "z3-solver", "python-flint", "numpy")
 #: Endings of folders of modules that are not proved, of templates, and of files of what is proved.
 UNPROVED_FOLDER, SHAPE_FOLDER, PROVED_FOLDER = "-unproved", "-shape", "-proved"
 RECORD = "record.json"  # of plain data, after its digest
@@ -53,48 +50,49 @@ def write_module(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleTyp
     return load_module(folder / f"{name}.py")
 
 
-def cached_template(shape: str) -> Template | None:
+def kept_template(shape: str) -> Template | None:
     """Return the proved texts of a spec's shape, if they are in the cache."""
-    found = _record(shape, SHAPE_FOLDER)
+    found = _record(_folder(shape, SHAPE_FOLDER))
     return None if found is None else Template(**found)
 
 
-def cache_template(shape: str, template: Template) -> None:
+def keep_template(shape: str, template: Template) -> None:
     """Write the proved texts of a spec's shape to the cache, if possible."""
-    _keep(shape, SHAPE_FOLDER, asdict(template))
+    _write_record(_folder(shape, SHAPE_FOLDER), asdict(template))
 
 
-def cached_files(sha256: str) -> dict[str, str] | None:
-    """Return the text of every file that is generated of a proved spec, if they are in the cache.
+def kept_files(key: str) -> Mapping[str, str] | None:
+    """Return the text of every file that is generated of a proved model, if it is in the cache.
 
-    What was proved of the very same spec, by the same sources of this package, is not proved anew.
+    `key` is that of the model: see `Model.key`.
     """
-    found: dict[str, str] | None = _record(sha256, PROVED_FOLDER)
+    found: Mapping[str, str] | None = _record(_folder(key, PROVED_FOLDER))
     return found
 
 
-def cache_files(sha256: str, files: Mapping[str, str]) -> None:
-    """Write the text of every file that is generated of a proved spec to the cache, if possible."""
-    _keep(sha256, PROVED_FOLDER, dict(files))
+def keep_files(key: str, files: Mapping[str, str]) -> None:
+    """Write the text of every file of a proved model to the cache, if possible."""
+    _write_record(_folder(key, PROVED_FOLDER), dict(files))
 
 
-def _record(sha256: str, kind: str) -> Any:
-    """Return plain data from the cache; None if it is missing, or not what was written."""
+def _record(folder: Path) -> Any:
+    """Return the plain data of a folder; None if it is missing, or not what was written there."""
     with suppress(FileError):
-        digest, _, text = (read_text(_folder(sha256, kind) / RECORD) or "").partition("\n")
-        return json.loads(text) if digest == _digest(text) else None
+        digest, _, text = (read_text(folder / RECORD) or "").partition("\n")
+        return json.loads(text) if digest == _digest(folder, text) else None
     return None
 
 
-def _keep(sha256: str, kind: str, content: Any) -> None:
-    """Write plain data to the cache, after its digest, if possible."""
+def _write_record(folder: Path, content: Any) -> None:
+    """Write plain data into a folder, after its digest, if possible."""
     text = json.dumps(content)
     with suppress(FileError):
-        write_text(_folder(sha256, kind) / RECORD, f"{_digest(text)}\n{text}")
+        write_text(folder / RECORD, f"{_digest(folder, text)}\n{text}")
 
 
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
+def _digest(folder: Path, text: str) -> str:
+    """Return the digest of a record, which is that of no other folder's."""
+    return hashlib.sha256(f"{folder.name}\n{text}".encode()).hexdigest()
 
 
 def _path(name: str, sha256: str, kind: str = "") -> Path:
@@ -105,22 +103,13 @@ def _folder(sha256: str, kind: str) -> Path:
     import platformdirs
 
     folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
-    return folder / f"{sha256}-{_generator()}{kind}"
+    return folder / f"{sha256}-{own_sources()}{kind}"
 
 
 @cache
-def _generator() -> str:
-    """Return the hash of the package's own sources, so that an edit invalidates the cache.
-
-    So do other versions of what proofs rest on.
-    """
-    from importlib.metadata import version
-
-    digest = hashlib.sha256(" ".join([VERSION, *map(version, PROVERS)]).encode())
-    for path in sorted(PACKAGE.rglob("*.[pch]*")):
-        if path.suffix in SOURCES and PACKAGE / "generated" not in path.parents:
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+def own_sources() -> str:
+    """Return the hash of the sources of this package as they were when it was first asked for."""
+    return sources_hash()
 
 
 def load_module(path: Path) -> ModuleType:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import filecmp
 import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from threading import Thread
 from types import ModuleType
@@ -21,11 +21,10 @@ import numpy as np
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.files import path_text, temporary_folder
 from piezo_sym.module_cache import (
-    PACKAGE,
     UNPROVED_FOLDER,
     cache_module,
     cached_module,
-    cached_template,
+    kept_template,
     load_module,
     write_module,
 )
@@ -34,9 +33,11 @@ from piezo_sym.spec.names import MAX_NAME
 from piezo_sym.spec.source import data, find, read, shipped
 from piezo_sym.spec.values import shape_hash
 from piezo_sym.spec.write import spec_hash
+from piezo_sym.version import PACKAGE
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
+    from piezo_sym.spec.values import Template
 
 GENERATED = Path("generated")  # of the working folder
 
@@ -145,7 +146,7 @@ def _refilled(name: str, sha256: str, data: Mapping[str, Any]) -> ModuleType | N
 
     What else loading would say of the values, the module's conditions say: in doubt, None.
     """
-    found = cached_template(shape_hash(data))
+    found = kept_template(shape_hash(data))
     if found is None or not found.quick:
         return None
     try:
@@ -170,25 +171,24 @@ def _starts_inside(module: Any) -> bool:
 
 def _derived(model: Model, stages: int | None) -> ModuleType:
     """Return the module of a model, generated into the user's cache, with its template."""
-    from piezo_sym.build import files_of, finished, keep
-    from piezo_sym.verification.process import examining
-
     data = model.flatten().model_dump()
     shape = shape_hash(data)
-    if found := cached_template(shape):
+    if found := kept_template(shape):
         from piezo_sym.derivation import derive
 
         derive(model)  # values may contradict each other where others do not
-    else:
-        with examining(model) as examined:
-            texts = finished(examined.template(), model.name).filled(data)
-            with _compiling_ahead(model.name, shape, texts, stages):
-                report = examined.report()
-        found = finished(examined.template(), model.name, report)
-        if report.failures and (module := _unproved(model, found.filled(data))):
-            return module
-        report.raise_if_not_proved()
-        keep(model, found, files_of(model, report, found))
+        return cache_module(model.name, model.sha256, found.filled(data))
+
+    from piezo_sym.build import report_and_texts
+
+    def meanwhile(template: Template) -> AbstractContextManager[None]:
+        return _compiling_ahead(model.name, shape, template.filled(data), stages)
+
+    report, found = report_and_texts(model, meanwhile)
+    if found and report.failures and (module := _unproved(model, found.filled(data))):
+        return module
+    report.raise_if_not_proved()
+    assert found is not None  # a report that proves a module has its texts
     return cache_module(model.name, model.sha256, found.filled(data))
 
 

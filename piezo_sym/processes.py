@@ -92,9 +92,9 @@ class Worker:
     def _start(self) -> None:
         if self.process is None or self.process.poll() is not None:
             self.close()
-            path = os.pathsep.join(path for path in sys.path if path)
+            path = os.pathsep.join(path or os.getcwd() for path in sys.path)
             self.process = subprocess.Popen(
-                (sys.executable, *self.arguments),
+                (sys.executable, "-P", *self.arguments),  # no package of the working folder
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 start_new_session=self.group,

@@ -120,12 +120,14 @@ class Report:
     rows : the verdicts.
     stated : what was to be shown for each row; rows on units come last, and have none.
     system : the system as text, for a second program to check; see `published`.
+    sources : the hash of the sources of the package that made it, if it was made by a process.
     """
 
     model: str
     rows: tuple[Row, ...]
     stated: tuple[Stated, ...] = ()
     system: Mapping[str, object] = field(default_factory=dict)
+    sources: str = ""
 
     @property
     def failures(self) -> tuple[Row, ...]:
@@ -141,6 +143,11 @@ class Report:
     def proved(self) -> bool:
         """Whether every required property is proved."""
         return not self.failures
+
+    @property
+    def decided(self) -> bool:
+        """Whether no row is open, so that more time would change none; rounding is no verdict."""
+        return all(row.verdict is not Verdict.OPEN or row.id == "rounding" for row in self.rows)
 
     def raise_if_not_proved(self) -> None:
         """Raise on a required property: a unit, else one refuted, else open for its own reasons.
@@ -220,7 +227,7 @@ def proofs_json(report: Report, model: Model, made: str) -> str:
 
 
 def report_of(text: str) -> Report:
-    """Return the rows and the system in the text of ``proofs.json``."""
+    """Return the rows and the system in the text of ``proofs.json``, without what was stated."""
     content = json.loads(text)
     rows = (_row(entry) for entry in content["obligations"])
     return Report(content["model"], tuple(rows), system=content["system"])
@@ -228,16 +235,16 @@ def report_of(text: str) -> Report:
 
 def _row(entry: Mapping[str, Any]) -> Row:
     return Row(
-        entry["id"],
-        entry["element"] or "",
-        entry["statement"],
-        Verdict(entry["verdict"]),
-        entry["witness"],
-        entry["reason"] or "",
-        entry["required"],
-        entry["method"],
-        entry["points"],
-        tuple(entry["certificate"] or ()),
+        id=entry["id"],
+        element=entry["element"] or "",
+        statement=entry["statement"],
+        verdict=Verdict(entry["verdict"]),
+        witness=entry["witness"],
+        reason=entry["reason"] or "",
+        required=entry["required"],
+        method=entry["method"],
+        points=entry["points"],
+        certificate=tuple(entry["certificate"] or ()),
     )
 
 

@@ -39,13 +39,13 @@ def generate(
     for file and byte for byte, with the first differing lines and what to do; with --all (or
     without SPEC) also if anything else is in OUT.
     """
-    from piezo_sym.build import refuse_case, shipped_models, start
-    from piezo_sym.spec.source import shipped
+    from piezo_sym.verification.process import started
 
-    names = specs or []
-    start(names or shipped())
+    started()
+    from piezo_sym.build import refuse_case, shipped_models
     from piezo_sym.spec.load import load
 
+    names = specs or []
     models = [load(spec) for spec in names] or list(shipped_models())
     called = [model.name for model in models]
     if twice := next((name for name in called if called.count(name) > 1), None):

@@ -34,8 +34,8 @@ def verify(
     property is proved, 1 if one is not (or the second program does not confirm it), 2 if a spec is
     wrong; the others are looked at all the same.  Exit code 3: a proof and a number disagree.
 
-    What is proved is kept in the user's cache, and not proved again before the spec or the package
-    changes.
+    What is proved is kept in the user's cache, and not proved again before the spec, the package or
+    a solver changes.
     """
     if recheck:
         from piezo_sym.verification.recheck import check_installed
@@ -72,9 +72,10 @@ def _show(reports: dict[str, Report], second: dict[str, Recheck], *, as_json: bo
 
 def _reports(specs: list[str]) -> tuple[dict[str, Report], dict[str, str], list[PiezoError]]:
     """Return the verdicts on specs, the texts of their ``proofs.json``, and what is wrong."""
-    from piezo_sym.build import PROOFS, examined, start
+    from piezo_sym.verification.process import started
 
-    start(specs)
+    started()
+    from piezo_sym.build import PROOFS, report_and_files
     from piezo_sym.spec.load import load
 
     reports: dict[str, Report] = {}
@@ -84,8 +85,8 @@ def _reports(specs: list[str]) -> tuple[dict[str, Report], dict[str, str], list[
         try:
             with about(spec):
                 model = load(spec)
-                reports[spec], files = examined(model)
-                proofs[spec] = files[f"{model.name}/{PROOFS}"]
+                reports[spec], files = report_and_files(model)
+                proofs[spec] = files[PROOFS.format(model.name)]
         except ContradictionError:
             raise
         except PiezoError as error:
@@ -129,5 +130,4 @@ def _print(report: Report) -> None:
 
 def _why(row: Row) -> str:
     at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
-    name = f"{row.id} of {row.element}" if row.element else row.id
-    return f"{name}: {row.reason}" + (f"\n  at {at}" if at else "")
+    return f"{row.name}: {row.reason}" + (f"\n  at {at}" if at else "")

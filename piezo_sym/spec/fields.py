@@ -42,7 +42,7 @@ def _number(value: Any) -> float:
         raise ValueError("a finite number")
     if abs(value) > MAX_SIZE:
         raise ValueError("a number up to 1e300")
-    return float(value)
+    return float(value) + 0.0  # -0.0 is 0.0
 
 
 def _text_or(read: Callable[[Any], Any]) -> Callable[[Any], Any]:

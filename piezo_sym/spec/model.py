@@ -8,6 +8,8 @@ below the folder of the spec that names it, or, in Python, a `Model`.
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -105,6 +107,16 @@ class Model(Tables):
     def sha256(self) -> str:
         """SHA-256 of the flat spec in canonical form; generated modules carry it."""
         return spec_hash(self.flatten().model_dump())
+
+    @property
+    def key(self) -> str:
+        """SHA-256 of all that the flat spec says, in its order: only equal models have the same."""
+        return hashlib.sha256(json.dumps(self.flatten().model_dump()).encode()).hexdigest()
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Model:
+        """Return a model with some tables exchanged, checked as any other."""
+        del deep  # nothing in it can be changed
+        return Model(**{**dict(self), **(update or {})})
 
     def to_toml(self) -> str:
         """Return the spec as TOML text; loading it gives an equal model.

@@ -91,7 +91,7 @@ def _number_texts(data: Mapping[str, Any], factors: Mapping[str, str]) -> Iterat
         for name, entry in data.get(table, {}).items():
             factor = Fraction(factors[name])
             for word, value in _lane_values(name, entry.get(key, default)):
-                si = scaled(float(value), factor)
+                si = scaled(float(value) + 0.0, factor)  # -0.0 is 0.0
                 if si and not 1 / MAX_SIZE <= abs(si) <= MAX_SIZE:
                     raise OverflowError(f"{name} is beyond all numbers")
                 yield word, repr(si)

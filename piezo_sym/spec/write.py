@@ -9,9 +9,11 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-ORDERED = ("parameters", "inputs", "elements")
+ORDERED = ("parameters", "inputs", "initial", "elements")
 MAX_SIZE = 1e300
-NOTHING: tuple[Any, ...] = (None, False, "", "0", [])
+#: Values that an entry has where it is left out; a law "0" says something, but as a rest.
+NOTHING: tuple[Any, ...] = (None, False, "", [])
+NO_REST = ["rest", "0"]
 
 
 def to_toml(data: Mapping[str, Any]) -> str:
@@ -53,8 +55,8 @@ def _dumped(pair: Mapping[str, Any]) -> str:
 def spec_hash(data: Mapping[str, Any]) -> str:
     """Return the SHA-256 of spec data.
 
-    Order counts where it means something: among parameters, inputs, elements and their states.
-    Entries without effect (0, "0", "", false, an empty list) are left out of the hash.
+    Order counts where it means something: among parameters, inputs, elements and their states, and
+    initial values. Entries without effect (0, "", false, an empty list, a rest "0") are left out.
     """
     rows = {name: _rows(table, name in ORDERED) for name, table in data.items()}
     tables = {name: table for name, table in rows.items() if table}
@@ -64,7 +66,8 @@ def spec_hash(data: Mapping[str, Any]) -> str:
 
 def _rows(table: Mapping[str, Any], ordered: bool) -> list[Any]:
     rows = [[key, _canonical(value, key == "states")] for key, value in table.items()]
-    return rows if ordered else sorted(row for row in rows if row[1] not in NOTHING)
+    said = (row for row in rows if row[1] not in NOTHING and row != NO_REST)
+    return rows if ordered else sorted(said)
 
 
 def _canonical(value: Any, ordered: bool = False) -> Any:
@@ -72,7 +75,7 @@ def _canonical(value: Any, ordered: bool = False) -> Any:
         case bool() | str() | None:
             return value
         case int() | float() if abs(value) <= MAX_SIZE:
-            return float(value)
+            return float(value) + 0.0  # -0.0 is 0.0
         case Mapping():
             return _rows(value, ordered)
         case list() | tuple():

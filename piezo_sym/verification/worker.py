@@ -13,6 +13,7 @@ import resource
 import signal
 import sys
 from contextlib import suppress
+from dataclasses import replace
 from time import monotonic
 
 from piezo_sym.verification.process import END, answer, packed
@@ -36,13 +37,18 @@ def main() -> None:
     sys.stdout = sys.stderr
     import piezo_sym.verification.examine  # noqa: F401  # while the caller still reads its spec
     from piezo_sym.proofs.solvers import solver
+    from piezo_sym.report import Report
+    from piezo_sym.version import sources_hash
 
     with suppress(OSError):  # it is tried again when something is asked
         solver("z3").worker.start()  # it imports its library meanwhile
 
+    sources = sources_hash()
     for number, line in enumerate(given):
         request, begun = pickle.loads(base64.b64decode(line)), monotonic()
         for message in answer(request):
+            if isinstance(message, Report):
+                message = replace(message, sources=sources)
             out.write(packed(message) + b"\n")
             out.flush()
             if isinstance(message, Progress):

@@ -1,16 +1,20 @@
 """What is proved is kept: the same spec is not proved again, and nothing else is taken for it."""
 
+import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from piezo_sym import Model, generate, simulate
-from piezo_sym.build import examined, render
+from piezo_sym.build import render, report_and_files
 from piezo_sym.cli import run
-from piezo_sym.report import Report
+from piezo_sym.report import Report, Verdict
+from piezo_sym.spec.load import parse
 from piezo_sym.verification import process
+from piezo_sym.verification.protocol import Progress
 
 pytestmark = pytest.mark.usefixtures("cache")
 ROOT = Path(__file__).parents[2]
@@ -35,8 +39,8 @@ def rows(report):
 
 
 def test_the_same_spec_is_not_proved_again_and_all_is_as_before(model, asked, tmp_path):
-    report, files = examined(model)
-    again, same = examined(model)
+    report, files = report_and_files(model)
+    again, same = report_and_files(model)
     assert len(asked) == 1
     assert (rows(again), same) == (rows(report), files)
     assert [row.certificate for row in again.rows] == [row.certificate for row in report.rows]
@@ -48,36 +52,159 @@ def test_the_same_spec_is_not_proved_again_and_all_is_as_before(model, asked, tm
 
 def test_a_run_proves_for_verify_too(model, asked):
     simulate(model, duration=1e-4)
-    assert examined(model)[0].proved
+    assert report_and_files(model)[0].proved
     assert len(asked) == 1
 
 
-def test_another_value_or_law_is_examined(spec, asked):
-    examined(Model(**spec))
+def test_another_value_or_law_is_report_and_files(spec, asked):
+    report_and_files(Model(**spec))
     spec["parameters"]["M"]["value"] *= 2
-    examined(Model(**spec))
+    report_and_files(Model(**spec))
     spec["elements"]["damper"]["force"] = "-d*v"
-    assert not examined(Model(**spec))[0].proved
+    assert not report_and_files(Model(**spec))[0].proved
     assert len(asked) == 3
 
 
 def test_what_is_not_proved_is_not_kept(unproved, asked):
-    assert rows(examined(unproved)[0]) == rows(examined(unproved)[0])
+    assert rows(report_and_files(unproved)[0]) == rows(report_and_files(unproved)[0])
     assert len(asked) == 2
+
+
+def kept_by_force(model, monkeypatch):
+    """Keep what is not proved."""
+    with monkeypatch.context() as patch:
+        patch.setattr(Report, "proved", True)
+        patch.setattr(Report, "decided", True)
+        report_and_files(model)
 
 
 @pytest.mark.parametrize("damage", [lambda text: text.replace("OPEN", "PROVED"), lambda _: ""])
 def test_what_was_changed_in_the_cache_is_not_believed(unproved, cache, asked, damage, monkeypatch):
-    """A record of something that is not proved is forged here, and then edited by hand."""
-    report = Report(unproved.name, (*examined(unproved)[0].rows,))
-    with monkeypatch.context() as patch:
-        patch.setattr(type(report), "proved", True)
-        examined(unproved)
+    kept_by_force(unproved, monkeypatch)
     (path,) = cache.rglob("*-proved/record.json")
     path.write_text(damage(path.read_text(encoding="utf-8")), encoding="utf-8")
     before = len(asked)
-    assert not examined(unproved)[0].proved
+    assert not report_and_files(unproved)[0].proved
     assert len(asked) == before + 1
+
+
+def test_a_record_is_that_of_its_folder_alone(model, unproved, cache, monkeypatch):
+    report_and_files(model)
+    kept_by_force(unproved, monkeypatch)
+    good, bad = (
+        next(path for path in cache.rglob("*-proved/record.json") if one.key in path.parent.name)
+        for one in (model, unproved)
+    )
+    bad.write_bytes(good.read_bytes())
+    assert not report_and_files(unproved)[0].proved
+
+
+LINKED = """
+[model]
+name = "linked"
+[parameters]
+R = { value = 1.0, unit = "ohm" }
+C = { value = 4.0, unit = "F" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[initial]
+q = 1.0
+[domain]
+assume = ["R >= 0"]
+[elements]
+cap = { kind = "capacitor", between = ["a", "gnd"], capacitance = "C", state = "q" }
+res = { kind = "resistor", between = ["a", "b"], voltage = "R*i", heats = "body" }
+link = { kind = "resistor", between = ["b", "gnd"], current = "0", heats = "body" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+"""
+
+
+def test_an_open_link_is_not_a_closed_one():
+    """With the link closed, R = 0 leaves the charge without a value."""
+    opened, closed = (parse(LINKED.replace("current =", law)) for law in ("current =", "voltage ="))
+    assert opened.sha256 != closed.sha256
+    assert report_and_files(opened)[0].proved
+    assert not report_and_files(closed)[0].proved
+
+
+TEXTS = (
+    ('name = "linked"', 'name = "linked"\ntitle = "0"'),
+    ('unit = "ohm" }', 'unit = "ohm", doc = "0" }'),
+    ("q = 1.0", "q = 1.0\nS = 0.0"),
+)
+
+
+@pytest.mark.parametrize(("old", "new"), TEXTS)
+def test_models_are_the_same_only_if_their_files_are(old, new):
+    one, other = parse(LINKED), parse(LINKED.replace(old, new))
+    assert one.key != other.key
+    assert one.sha256 != other.sha256
+
+
+def test_zeros_of_both_signs_are_the_same():
+    one, other = (parse(LINKED.replace("q = 1.0", f"q = {zero}")) for zero in ("0.0", "-0.0"))
+    assert (one.key, one.sha256) == (other.key, other.sha256)
+
+
+def test_a_row_that_is_open_for_want_of_time_is_not_kept(model, asked, monkeypatch):
+    messages = process.messages
+
+    def late(worker, request):
+        for message in messages(worker, request):
+            if isinstance(message, Progress):
+                rows = {n: row for n, row in message.rows.items() if row.id != "odd"}
+                message = replace(message, rows=rows)
+            yield message
+
+    with monkeypatch.context() as patch:
+        patch.setattr(process, "messages", late)
+        report, _ = report_and_files(model)
+        assert report.proved
+        assert {row.verdict for row in report.rows if row.id == "odd"} == {Verdict.OPEN}
+    report, _ = report_and_files(model)
+    assert len(asked) == 2
+    assert {row.verdict for row in report.rows if row.id == "odd"} == {Verdict.PROVED}
+
+
+def test_what_other_sources_have_proved_is_not_kept(model, asked, monkeypatch):
+    """The process may have begun after an edit of the package."""
+    messages = process.messages
+
+    def others(worker, request):
+        for message in messages(worker, request):
+            known = isinstance(message, Report)
+            yield replace(message, sources="of others") if known else message
+
+    with monkeypatch.context() as patch:
+        patch.setattr(process, "messages", others)
+        assert report_and_files(model)[0].proved
+    report_and_files(model)
+    assert len(asked) == 2
+
+
+def test_a_package_in_the_working_folder_is_not_that_of_the_process(tmp_path):
+    (tmp_path / "piezo_sym").mkdir()
+    (tmp_path / "piezo_sym" / "__init__.py").write_text("raise SystemExit('not this one')")
+    code = "from piezo_sym.cli import run; raise SystemExit(run(['verify', 'oscillator']))"
+    words = [sys.executable, "-P", "-c", code]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_copy_with_other_tables_is_another_model(model):
+    domain = model.domain.model_copy(update={"assume": ()})
+    copy = model.model_copy(update={"domain": domain})
+    assert copy.key != model.key
+    assert copy.flatten().domain.assume == ()
+
+
+def test_a_spec_from_a_pipe_is_read_once(tmp_path):
+    command = f"cat {ROOT}/piezo_sym/models/oscillator.toml | {sys.executable} -m piezo_sym"
+    words = ["sh", "-c", f"{command} verify /dev/stdin"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def test_the_cache_may_be_read_only(model, cache):
@@ -86,7 +213,7 @@ def test_the_cache_may_be_read_only(model, cache):
     assert render(model)
 
 
-def test_commands_start_no_process_for_what_is_known(tmp_path, monkeypatch, capsys):
+def test_commands_ask_no_process_for_what_is_known(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert run(["verify", "oscillator"]) == 0
     first = capsys.readouterr().out
@@ -96,7 +223,6 @@ from piezo_sym.cli import run
 from piezo_sym.verification import process
 process.messages = None
 assert run(["verify", "oscillator"]) == 0
-assert process._examiner().process is None
 sys.exit(run(["generate", "oscillator"]))
 """
     words = [sys.executable, "-c", code]
