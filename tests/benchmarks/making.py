@@ -14,7 +14,7 @@ from sympy.core.cache import clear_cache
 
 from piezo_sym import Model, derive, verify
 from piezo_sym.bench.contest import Contestant, Pair, compared
-from piezo_sym.build import render
+from piezo_sym.build import files_of, report_and_texts
 from piezo_sym.spec.tables import banks
 from tests.benchmarks.report import Part
 
@@ -26,7 +26,7 @@ LARGE = 10_000
 STAGES: tuple[tuple[str, Callable[[Model], object]], ...] = (
     ("derivation", derive),
     ("derivation and proofs", lambda model: verify(derive(model))),
-    ("all files of a module", lambda model: render(model, allow_unproved=True)),
+    ("all files of a module", lambda model: files_of(model, *report_and_texts(model))),
 )
 
 
