@@ -149,7 +149,7 @@ class Hunt:
             for name in equal:
                 changed[columns[name]] = points[columns[equal[0]]]
             bound = self.conditioned.isdisjoint({*zero, *equal[1:]})
-            track.see(kind, space.at(changed if bound else self.draw.inside(changed)))
+            track.see(kind, space.at(changed if bound else changed[:, space.at(changed).inside]))
 
     def _blocks(self) -> Iterator[tuple[str, Space, Array]]:
         """Yield blocks of points inside the domain, with the way they were found."""

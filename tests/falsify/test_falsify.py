@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from piezo_sym import derive, load
+from piezo_sym.codegen.template import template_of
 from piezo_sym.errors import ContradictionError
-from piezo_sym.falsify import falsify
+from piezo_sym.falsify import falsify, module_from
+from piezo_sym.spec.load import parse
 from tests.falsify.specs import AMBIENT, INPUT, MASS, SPRING, built, damper, module_of
 
 PASSIVE = ("passive", "damper")
@@ -318,3 +320,35 @@ def test_a_module_takes_parameters_of_a_bank_per_lane_and_point(stack):
             alone = module.Parameters(**own, T_0=together.T_0[n])
             expected = getattr(module, function)(x[:, n], u[:, n], alone)
             np.testing.assert_allclose(found[..., n], expected, rtol=1e-13)
+
+
+TWO_AMBIENTS = """
+[model]
+name = "two_ambients"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+d = { value = 1.0, unit = "N*s/m" }
+k = { value = 1.0, unit = "N/m" }
+T_0 = { value = 293.15, unit = "K" }
+c = { value = 20.0, unit = "J/K" }
+lam = { value = 0.2, unit = "W/K" }
+[inputs]
+T_e = { unit = "K", default = 293.15 }
+[domain]
+assume = ["d >= 0", "lam >= 0", "T_e > 0"]
+[elements]
+mass = { kind = "mass", at = "tip", mass = "m" }
+springs = { kind = "spring", between = ["tip", "wall"], count = 3, stiffness = "k", state = "z" }
+damper = { kind = "damper", between = ["tip", "wall"], force = "d*v", heats = "frame" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+frame = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+first = { kind = "ambient", body = "body", conductance = "lam", input = "T_e" }
+second = { kind = "ambient", body = "frame", conductance = "lam", input = "T_e" }
+"""
+
+
+def test_a_bank_of_any_size_is_attacked_beside_two_ambients():
+    """Points of the spec's own size were looked up in the domain of a smaller one."""
+    iphs = derive(parse(TWO_AMBIENTS))
+    module = module_from(template_of(iphs).filled(iphs.model.model_dump())[".py"])
+    assert all(attack.points for attack in falsify(iphs, module, [("exergy", ""), ("sigma", "")]))
