@@ -546,7 +546,7 @@ typedef struct {
     mask sketch, sketched;     /* lanes that may stop early, beyond a switch; lanes that did */
     double enough;             /* in units of noise: they stop when a change is below this */
     real iterations;           /* of Newton's method */
-    int most, late;            /* of them in a step; after so many it may be given up */
+    int most, late;            /* iterations in a step; after `late` it may be given up */
     double stays;              /* changes that shrink by no more than this factor stagnate */
 } MODEL(block);
 
@@ -843,7 +843,7 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
 }
 
 /*
- * Rates and states at a part of a step, and means over a step whose integrands have kinks. Comes
+ * Rates and states at a fraction of a step, and means over a step whose integrands have kinks. Comes
  * after gauss.c.
  *
  * Gauss quadrature is exact to round-off only where integrands are smooth. A bend function is one
@@ -852,7 +852,7 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
  * and has its own pieces, so that its numbers do not depend on other lanes.
  */
 
-/* Weights of the stages' rates for the rate at a part of the step. */
+/* Weights of the stages' rates for the rate at a fraction of the step. */
 static inline void MODEL(rate_weights)(real at, real *weight)
 {
     for (long j = 0; j < STAGES; ++j) {
@@ -863,7 +863,7 @@ static inline void MODEL(rate_weights)(real at, real *weight)
     }
 }
 
-/* The same for the change of the state from the begin of the step, per length of the step. */
+/* Weights for the change of the state since the beginning of the step, per length of the step. */
 static inline void MODEL(state_weights)(real at, real *weight)
 {
     for (long j = 0; j < STAGES; ++j) {
@@ -873,7 +873,7 @@ static inline void MODEL(state_weights)(real at, real *weight)
     }
 }
 
-/* All states at a part of the step, by the rates at its stages. */
+/* All states at a fraction of the step, by the rates at its stages. */
 static void MODEL(reach_part)(const MODEL(block) *m, real h, const real *rates, real at)
 {
     real weight[STAGES];
@@ -887,10 +887,10 @@ static void MODEL(reach_part)(const MODEL(block) *m, real h, const real *rates, 
 }
 
 #if defined(BENDS)
-/* Most iterations of a search; a mean is off by the square of what a place is off. */
+/* Most iterations of a search; a mean is off by the square of a place's error. */
 enum { MOST_TRIES = 60, DIPS = 6 };
 
-/* Bend function k of one lane at a part of the step. */
+/* Bend function k of one lane at the fraction `at` of the step. */
 static double MODEL(bend_at)(const MODEL(block) *m, real h, long k, int lane, double at)
 {
     MODEL(reach_part)(m, h, m->rates, wide(at));
@@ -1033,7 +1033,7 @@ static void MODEL(integrate_piece)(const MODEL(block) *m, real h, real low, real
     }
 }
 
-/* Means over split steps in some lanes, with so many nodes per piece. */
+/* Means over split steps in some lanes, with `nodes` nodes per piece. */
 static void MODEL(average_by)(const MODEL(block) *m, real h, mask where, const double *at,
                               const double *weight, long nodes)
 {
@@ -1071,7 +1071,7 @@ static mask MODEL(average_split)(const MODEL(block) *m, real h)
 }
 
 /*
- * The weight of slopes up to a part of the step. With slopes U'' that differ along the step, the
+ * The weight of slopes up to a fraction of the step. With slopes U'' that differ along the step, the
  * derivative of mean i by rate j is h int (l_i/b_i) U'' A_j dtau, A_j = int_0^tau l_j; Newton's
  * method has h a_ij times one slope in its place. So slopes are averaged with the trace of l_i
  * A_j/b_i as weight, and this is its integral. With one stage the derivative is exact.
@@ -1110,15 +1110,13 @@ static void MODEL(slopes_split)(const MODEL(block) *m, real h, long stage)
  * gauss.c.
  */
 
-/*
- * Tables: weights for the states at nodes; into the basis in which the stages decouple, and back.
- */
+/* Tables: weights for the states at nodes; matrices into and out of the basis of decoupled stages. */
 #define NODE_REACH node_reach
 #define FINE_REACH fine_reach
 #define BASIS_STAGE basis_inverse
 #define STAGE_BASIS stage_basis
 
-/* Of the states at a point of the step, those that integrands read. */
+/* The states, at a point of the step, that integrands read. */
 static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
 {
     for (long r = 0; r < MODEL(reads); ++r) {
@@ -1496,7 +1494,7 @@ static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const r
     return found;
 }
 
-/* The same for whole steps, and for each piece of those that are split. */
+/* The lanes where means are rough in a step, or in a piece of a step that is split. */
 static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) *rule, const real *noise)
 {
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);

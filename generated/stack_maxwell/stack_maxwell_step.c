@@ -499,7 +499,7 @@ static const double basis_inverse[1][1] = {
 enum { BANK, OWN, INNER };
 enum { EFFORT, SLIP, HEAT, SHARE, GIVEN };
 enum { STIFFNESS, LIMIT, PARAMETERS };
-/* The part of a step at which a path functional first begins, or ceases, to yield; and how often some do. */
+/* Where in a step, as a fraction, a path functional first begins or ceases to yield; how often some do. */
 enum { EARLIEST, HOW_OFTEN, YIELD };
 #endif /* PATHS */
 
@@ -528,7 +528,7 @@ typedef struct {
     mask sketch, sketched;     /* lanes that may stop early, beyond a switch; lanes that did */
     double enough;             /* in units of noise: they stop when a change is below this */
     real iterations;           /* of Newton's method */
-    int most, late;            /* of them in a step; after so many it may be given up */
+    int most, late;            /* iterations in a step; after `late` it may be given up */
     double stays;              /* changes that shrink by no more than this factor stagnate */
 } MODEL(block);
 
@@ -851,10 +851,7 @@ static double MODEL(polynomial)(const double *a, long degree, double at)
     return sum;
 }
 
-/*
- * Where a polynomial that is monotonic between two points has a value: Newton's method and
- * bisection.
- */
+/* Where a polynomial, monotonic from low to high, has a value: by Newton's method and bisection. */
 static double MODEL(meets)(const double *a, long degree, double value, double low, double high)
 {
     const int rises = MODEL(polynomial)(a, degree, low) < MODEL(polynomial)(a, degree, high);
@@ -940,14 +937,14 @@ static void MODEL(find_coordinate)(const MODEL(block) *m, double h, long i, int 
  * Stops on one coordinate have one polynomial: they are computed side by side, without branches.
  */
 
-/* Parts of a step: what happens before this is at its begin. */
+/* What happens before this fraction of a step counts as at its beginning. */
 #define BEGUN 1e-6
-/* An inner state so near to its limit, relative to it, was put there by the step before. */
+/* An inner state this close to its limit, relative to it, was put there by the step before. */
 #define PUT_THERE 1e-14
-/* How near to a limit, in parts of the step, a place is found: work done there goes with its square. */
+/* Accuracy of a place, as a fraction of the step: the error of work done there goes with its square. */
 #define FOUND 1e-8
 
-/* Stops on one coordinate, side by side: so many at a time, looked for among so many. */
+/* Stops on one coordinate, side by side: the most at a time, and lanes searched at a time. */
 enum { SOME = 64, SEEN = 16 };
 
 /*
@@ -969,8 +966,8 @@ typedef struct {
 } MODEL(piece);
 
 /*
- * The piece's part up to which z follows C: to the end, or to where C reaches what is left to the
- * limit. By Newton's method and bisection, in all lanes as long as one of them moves.
+ * The piece's part up to which z follows C: to the end, or to where C has moved by the distance
+ * to the limit. By Newton's method and bisection, in all lanes as long as one of them moves.
  */
 static void MODEL(find_limits)(const MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {
@@ -1135,15 +1132,15 @@ static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
 }
 
 /*
- * What path functionals give to the stages of a step, and at a point. Comes after stop.c.
+ * The values of path functionals at the stages of a step, and at a point. Comes after stop.c.
  */
 
-/* At a single point, an inner state so near to its limit, relative to it, has reached it. */
+/* At a single point, an inner state this close to its limit, relative to it, counts as at it. */
 #define AT_LIMIT 1e-9
 
 /*
- * What lanes of a bank with one drive have in common: the rates of their coordinate at the stages, its
- * change up to each, and its least and its largest; where it does not turn, whether it rises.
+ * The course of a coordinate that lanes of a bank share: its rates at the stages, its change up to
+ * each stage, its least and largest change; whether it turns, and if not, whether it rises.
  */
 typedef struct {
     real h, rate[STAGES], at_stage[STAGES], least, largest;
@@ -1397,15 +1394,13 @@ static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *br
  * gauss.c.
  */
 
-/*
- * Tables: weights for the states at nodes; into the basis in which the stages decouple, and back.
- */
+/* Tables: weights for the states at nodes; matrices into and out of the basis of decoupled stages. */
 #define NODE_REACH node_reach
 #define FINE_REACH fine_reach
 #define BASIS_STAGE basis_inverse
 #define STAGE_BASIS stage_basis
 
-/* Of the states at a point of the step, those that integrands read. */
+/* The states, at a point of the step, that integrands read. */
 static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
 {
     for (long r = 0; r < MODEL(reads); ++r) {
@@ -1785,7 +1780,7 @@ static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const r
     return found;
 }
 
-/* The same for whole steps, and for each piece of those that are split. */
+/* The lanes where means are rough in a step, or in a piece of a step that is split. */
 static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) *rule, const real *noise)
 {
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);

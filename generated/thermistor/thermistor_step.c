@@ -399,7 +399,7 @@ typedef struct {
     mask sketch, sketched;     /* lanes that may stop early, beyond a switch; lanes that did */
     double enough;             /* in units of noise: they stop when a change is below this */
     real iterations;           /* of Newton's method */
-    int most, late;            /* of them in a step; after so many it may be given up */
+    int most, late;            /* iterations in a step; after `late` it may be given up */
     double stays;              /* changes that shrink by no more than this factor stagnate */
 } MODEL(block);
 
@@ -689,15 +689,13 @@ static mask MODEL(choose)(long branches, const real *side, real *branch, mask wh
  * gauss.c.
  */
 
-/*
- * Tables: weights for the states at nodes; into the basis in which the stages decouple, and back.
- */
+/* Tables: weights for the states at nodes; matrices into and out of the basis of decoupled stages. */
 #define NODE_REACH node_reach
 #define FINE_REACH fine_reach
 #define BASIS_STAGE basis_inverse
 #define STAGE_BASIS stage_basis
 
-/* Of the states at a point of the step, those that integrands read. */
+/* The states, at a point of the step, that integrands read. */
 static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
 {
     for (long r = 0; r < MODEL(reads); ++r) {
@@ -1068,7 +1066,7 @@ static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const r
     return found;
 }
 
-/* The same for whole steps, and for each piece of those that are split. */
+/* The lanes where means are rough in a step, or in a piece of a step that is split. */
 static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) *rule, const real *noise)
 {
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);

@@ -15,16 +15,16 @@ typedef struct {
 } MODEL(task);
 
 enum { ROUGH_ITERATIONS = 8 };
-/* Accuracy of rates that only serve to locate a switch, as a part of the tolerance. */
+/* Accuracy of rates that only serve to locate a switch, as a fraction of the tolerance. */
 #define SKETCH 0.01
-/* Accuracy of rates whose residuals become heat, as a part of the tolerance. */
+/* Accuracy of rates whose residuals become heat, as a fraction of the tolerance. */
 #define RESIDUAL 1e-2
-/* With at least so many switches it may be better to step over kinks. */
+/* With at least this many switches it may be better to step over kinks. */
 enum { MANY = 8 };
-/* Accuracy of a survey's steps, and the shortest of them, as a part of the longest. */
+/* Accuracy of a survey's steps, and the shortest of them, as a fraction of the longest. */
 #define ROUGH 1e-3
 #define SHORTEST 1e-6
-/* Steps of a survey at most; later magnitudes count when the run itself reaches them. */
+/* The most steps of a survey; later magnitudes count when the run itself reaches them. */
 enum { MOST_SURVEYED = 10000 };
 
 /* Sizes and places of a model's arrays, see the model's own function. */
@@ -36,7 +36,7 @@ void MODEL(sizes_of)(const MODEL(parameters) *p, long *out)
     MODEL(sizes)(&reals, out);
 }
 
-/* Give a batch its places in memory, which may be NULL; returns how many bytes it takes. */
+/* Place a batch's arrays in memory, which may be NULL; returns their size in bytes. */
 static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memory)
 {
     MODEL(block) *m = &b->m;
@@ -69,10 +69,10 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
 extern const long MODEL(lossy);
 const long MODEL(lossy) = MODEL(heated) >= 0;
 
-/* Vectors lie at multiples of so many bytes. */
+/* Alignment of vectors, in bytes. */
 enum { ALIGNED = 64 };
 
-/* How many bytes a batch takes. */
+/* The size of a batch, in bytes. */
 long MODEL(batch_size)(const MODEL(task) *task);
 long MODEL(batch_size)(const MODEL(task) *task)
 {
@@ -231,7 +231,7 @@ void MODEL(survey)(MODEL(batch) *b, double longest)
         MODEL(survey_some)(b, first, longest);
 }
 
-/* Take at most so many steps in each lane; returns whether there is more to do. */
+/* Take at most `steps` steps in each lane; returns whether there is more to do. */
 int MODEL(go)(MODEL(batch) *b, long steps);
 int MODEL(go)(MODEL(batch) *b, long steps)
 {

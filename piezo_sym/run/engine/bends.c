@@ -1,5 +1,5 @@
 /*
- * Rates and states at a part of a step, and means over a step whose integrands have kinks. Comes
+ * Rates and states at a fraction of a step, and means over a step whose integrands have kinks. Comes
  * after gauss.c.
  *
  * Gauss quadrature is exact to round-off only where integrands are smooth. A bend function is one
@@ -8,7 +8,7 @@
  * and has its own pieces, so that its numbers do not depend on other lanes.
  */
 
-/* Weights of the stages' rates for the rate at a part of the step. */
+/* Weights of the stages' rates for the rate at a fraction of the step. */
 static inline void MODEL(rate_weights)(real at, real *weight)
 {
     for (long j = 0; j < STAGES; ++j) {
@@ -19,7 +19,7 @@ static inline void MODEL(rate_weights)(real at, real *weight)
     }
 }
 
-/* The same for the change of the state from the begin of the step, per length of the step. */
+/* Weights for the change of the state since the beginning of the step, per length of the step. */
 static inline void MODEL(state_weights)(real at, real *weight)
 {
     for (long j = 0; j < STAGES; ++j) {
@@ -29,7 +29,7 @@ static inline void MODEL(state_weights)(real at, real *weight)
     }
 }
 
-/* All states at a part of the step, by the rates at its stages. */
+/* All states at a fraction of the step, by the rates at its stages. */
 static void MODEL(reach_part)(const MODEL(block) *m, real h, const real *rates, real at)
 {
     real weight[STAGES];
@@ -43,10 +43,10 @@ static void MODEL(reach_part)(const MODEL(block) *m, real h, const real *rates, 
 }
 
 #if defined(BENDS)
-/* Most iterations of a search; a mean is off by the square of what a place is off. */
+/* Most iterations of a search; a mean is off by the square of a place's error. */
 enum { MOST_TRIES = 60, DIPS = 6 };
 
-/* Bend function k of one lane at a part of the step. */
+/* Bend function k of one lane at the fraction `at` of the step. */
 static double MODEL(bend_at)(const MODEL(block) *m, real h, long k, int lane, double at)
 {
     MODEL(reach_part)(m, h, m->rates, wide(at));
@@ -189,7 +189,7 @@ static void MODEL(integrate_piece)(const MODEL(block) *m, real h, real low, real
     }
 }
 
-/* Means over split steps in some lanes, with so many nodes per piece. */
+/* Means over split steps in some lanes, with `nodes` nodes per piece. */
 static void MODEL(average_by)(const MODEL(block) *m, real h, mask where, const double *at,
                               const double *weight, long nodes)
 {
@@ -227,7 +227,7 @@ static mask MODEL(average_split)(const MODEL(block) *m, real h)
 }
 
 /*
- * The weight of slopes up to a part of the step. With slopes U'' that differ along the step, the
+ * The weight of slopes up to a fraction of the step. With slopes U'' that differ along the step, the
  * derivative of mean i by rate j is h int (l_i/b_i) U'' A_j dtau, A_j = int_0^tau l_j; Newton's
  * method has h a_ij times one slope in its place. So slopes are averaged with the trace of l_i
  * A_j/b_i as weight, and this is its integral. With one stage the derivative is exact.

@@ -70,7 +70,7 @@ def c_source(*names: str) -> str:
 
 
 def tables(stages: int, nodes: int, *kinds: str) -> str:
-    """Return the numbers of Gauss collocation, its means taken at so many nodes.
+    """Return the numbers of Gauss collocation, its means taken at `nodes` nodes.
 
     `kinds`: "lossy" for those of a dissipative step; "lanes" for some once more, as vectors that
     hold all stages take them, behind the others. `tests/run/tableau.py` writes the files.
@@ -131,7 +131,7 @@ def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -
 
 
 def stages_source(model: str, lanes: int) -> str:
-    """Return the file to compile beside that of steps: all stages at once, in so many lanes."""
+    """Return the file to compile beside that of steps: all stages at once, in `lanes` lanes."""
     unused = ("function", "variable", "const-variable")
     head = [
         "#if !defined(PLAIN)",

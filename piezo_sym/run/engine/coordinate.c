@@ -22,10 +22,7 @@ static double MODEL(polynomial)(const double *a, long degree, double at)
     return sum;
 }
 
-/*
- * Where a polynomial that is monotonic between two points has a value: Newton's method and
- * bisection.
- */
+/* Where a polynomial, monotonic from low to high, has a value: by Newton's method and bisection. */
 static double MODEL(meets)(const double *a, long degree, double value, double low, double high)
 {
     const int rises = MODEL(polynomial)(a, degree, low) < MODEL(polynomial)(a, degree, high);

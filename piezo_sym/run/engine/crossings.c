@@ -3,21 +3,17 @@
  * where it is. Comes after trajectory.c.
  */
 
-/*
- * A sign change of a switching function: parts of the step that enclose it, and the values there.
- */
+/* A sign change of a switching function: fractions of the step that enclose it, the values there. */
 typedef struct {
     long which;
     double low, high, at_low, at_high;
     int guessed; /* whether the value at `high` is only interpolated */
 } MODEL(crossing);
 
-/* Points at which a switching function is compared: begin, stages, end, and some between. */
+/* Points at which a switching function is evaluated: begin, stages, end, and some between. */
 enum { LOOKS = 1 + PARTS * (STAGES + 1) };
 
-/*
- * Its values there, positive while the branch holds; returns the lanes where the sign may change.
- */
+/* Evaluate switching function k, positive while its branch holds; returns lanes that may switch. */
 static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
 {
     real low = wide(HUGE_VAL), high = wide(-HUGE_VAL);
@@ -32,7 +28,7 @@ static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
         low = least(value[i * PARTS], low);
         high = largest_of(value[i * PARTS], high);
     }
-    const mask near = low < high - low; /* else it is too far from zero */
+    const mask near = low < high - low; /* else the values are too far from zero */
     if (!any(near))
         return near;
     for (long i = 0; i <= STAGES; ++i)
@@ -92,9 +88,9 @@ static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
 
 #if defined(BENDS)
 /*
- * The part of a step to try next where its error is too large; `part` is what the error suggests.
- * Steps may go across kinks of energies, which have no branches. One within the step may be the
- * cause; then a step that ends just behind it will do.
+ * The fraction of a step to try next when its error is too large; the error suggests `part`.
+ * Steps may cross kinks of energies, which have no branches. If such a kink within the step is the
+ * cause, a step that ends just behind it suffices.
  */
 static double MODEL(to_kink)(const MODEL(batch) *b, int lane, double part)
 {
@@ -105,7 +101,7 @@ static double MODEL(to_kink)(const MODEL(batch) *b, int lane, double part)
 }
 #endif
 
-/* Locate the sign changes of some lanes on the known polynomials, as parts of the steps. */
+/* Locate the sign changes of some lanes on the known polynomials, as fractions of the steps. */
 static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *crossing, double *part)
 {
     MODEL(block) *m = &b->m;
@@ -133,7 +129,7 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
             if (c->guessed) {
                 c->guessed = 0;
                 c->at_high = value;
-                if (value >= 0.0) { /* there is none */
+                if (value >= 0.0) { /* there is no sign change */
                     c->which = -1;
                     SET(where, lane, 0);
                 }

@@ -6,11 +6,11 @@
 /* The current step of all lanes: lengths, which lanes they concern, and their outcomes. */
 typedef struct {
     real h, behind, slope;
-    mask busy, sampling, steps, known; /* lanes with a step; for samples; others; with a prediction */
+    mask busy, sampling, steps, known; /* lanes with a step; for a sample; another; with a prediction */
     mask planned;                      /* steps whose length their errors decide */
     mask loose;                        /* where Newton's method may stop short of round-off */
     mask resumed;                      /* whose step begins at the last sample */
-    mask found, good;                  /* whose step has rates; and lies in the domain */
+    mask found, good;                  /* lanes whose step has rates; and lies in the domain */
     mask search, switched;             /* where a switch has to be located; and a step may be cut */
     mask booked, turns, ends;          /* whose step counts; whose branches turn; who steps to kinks */
     MODEL(crossing) crossing[REAL_WIDTH];
@@ -75,7 +75,7 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
         MODEL(begin_at_runs)(b, t->resumed, over);
 }
 
-/* Write samples; a step without further samples is booked. */
+/* Write samples; book the steps that have no more samples. */
 static void MODEL(sampled)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {

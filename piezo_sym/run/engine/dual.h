@@ -1,8 +1,8 @@
 /*
- * Numbers with a slope along a direction: a step's text, computed with them, gives its own derivatives,
- * exact to round-off.  They are complex numbers whose imaginary part is the slope times a factor so
- * small that its square is nothing beside 1: for OF, two lanes, the value and the slope.  Where a root
- * or a power has no slope, at zero, there is none along any direction.
+ * Dual numbers, a value and its slope in a direction: a step computed with them gives its derivatives,
+ * exact to round-off.  They are complex; the imaginary part is the slope, times a factor whose square
+ * vanishes beside 1.  OF has two lanes, value and slope.  Where a root or a power has no slope, at
+ * zero, the slope is infinite or NaN in every direction.
  */
 #include <math.h>
 #include <stddef.h>

@@ -18,11 +18,11 @@
 #define LIKE_THE_LAST(smooth) sqrt_of(sqrt_of(smooth))
 #endif
 /*
- * The part of an error of order s + 1 that is left at the end. SMOOTH: of an integral over time, by
- * the misfit's part of the change of the rate. PULL: of a state that oscillates or decays at the
- * rate z/h. The fourth root and the highest power approximate the error of Gauss quadrature and of
- * the stability function. The other constants are calibrated on test models: FALLS bounds series
- * that hardly decay yet, and oscillations do not damp errors of earlier steps.
+ * The fraction of an error of order s + 1 that is left at the end of the step. SMOOTH: in an integral
+ * over time, for the ratio of the misfit to the change of the rate. PULL: in a state that oscillates
+ * or decays at the rate z/h. The fourth root and the highest power approximate the errors of Gauss
+ * quadrature and of the stability function. The other constants are calibrated on test models: FALLS
+ * bounds series that hardly decay yet, and oscillations do not damp errors of earlier steps.
  */
 #define FALLS(part) ((part) * least(300.0 * (part) * (part), wide(1.0)))
 #if STAGES == 4
@@ -105,14 +105,14 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long 
         const real misfit = further(further(low, high), next);
         const real share = least(size_of(misfit) / most, wide(1.0));
         const real slow = MODEL(slow_part)(low, high, last, before);
-        /* beyond a switch a rate at the end may have no value */
+        /* the rate at an end beyond a switch may have no value */
         const real more = chosen(slow == slow, series * slow, zero);
         left[k] = STAGES > 3 ? (real)largest_of(SMOOTH(share), more) : (real)SMOOTH(share);
         found[k] = gamma * misfit;
     }
 }
 
-/* The same for all states. Those of path functionals are exact on the paths of their coordinates. */
+/* The misfits of all states; where stops yield, no series is used for their inner states. */
 static void MODEL(all_misfits)(const MODEL(batch) *b, real gamma)
 {
     MODEL(misfits)(b, gamma, wide(1.0), 0, b->m.n);

@@ -3,15 +3,13 @@
  * gauss.c.
  */
 
-/*
- * Tables: weights for the states at nodes; into the basis in which the stages decouple, and back.
- */
+/* Tables: weights for the states at nodes; matrices into and out of the basis of decoupled stages. */
 #define NODE_REACH node_reach
 #define FINE_REACH fine_reach
 #define BASIS_STAGE basis_inverse
 #define STAGE_BASIS stage_basis
 
-/* Of the states at a point of the step, those that integrands read. */
+/* The states, at a point of the step, that integrands read. */
 static void MODEL(reach_read)(const MODEL(block) *m, real h, const double *weight)
 {
     for (long r = 0; r < MODEL(reads); ++r) {

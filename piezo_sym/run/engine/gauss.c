@@ -50,7 +50,7 @@ typedef struct {
 enum { BANK, OWN, INNER };
 enum { EFFORT, SLIP, HEAT, SHARE, GIVEN };
 enum { STIFFNESS, LIMIT, PARAMETERS };
-/* The part of a step at which a path functional first begins, or ceases, to yield; and how often some do. */
+/* Where in a step, as a fraction, a path functional first begins or ceases to yield; how often some do. */
 enum { EARLIEST, HOW_OFTEN, YIELD };
 #endif /* PATHS */
 
@@ -89,7 +89,7 @@ typedef struct {
     mask sketch, sketched;     /* lanes that may stop early, beyond a switch; lanes that did */
     double enough;             /* in units of noise: they stop when a change is below this */
     real iterations;           /* of Newton's method */
-    int most, late;            /* of them in a step; after so many it may be given up */
+    int most, late;            /* iterations in a step; after `late` it may be given up */
     double stays;              /* changes that shrink by no more than this factor stagnate */
 #if PAIRS
     MODEL(complex) *factor, *right;

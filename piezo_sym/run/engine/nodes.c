@@ -47,7 +47,7 @@ static mask MODEL(rough)(const MODEL(block) *m, const MODEL(rule) *rule, const r
     return found;
 }
 
-/* The same for whole steps, and for each piece of those that are split. */
+/* The lanes where means are rough in a step, or in a piece of a step that is split. */
 static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) *rule, const real *noise)
 {
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);

@@ -1,13 +1,13 @@
 /*
- * What path functionals give to the stages of a step, and at a point. Comes after stop.c.
+ * The values of path functionals at the stages of a step, and at a point. Comes after stop.c.
  */
 
-/* At a single point, an inner state so near to its limit, relative to it, has reached it. */
+/* At a single point, an inner state this close to its limit, relative to it, counts as at it. */
 #define AT_LIMIT 1e-9
 
 /*
- * What lanes of a bank with one drive have in common: the rates of their coordinate at the stages, its
- * change up to each, and its least and its largest; where it does not turn, whether it rises.
+ * The course of a coordinate that lanes of a bank share: its rates at the stages, its change up to
+ * each stage, its least and largest change; whether it turns, and if not, whether it rises.
  */
 typedef struct {
     real h, rate[STAGES], at_stage[STAGES], least, largest;

@@ -5,7 +5,7 @@
  */
 #if REAL_WIDTH == 1
 
-/* Solve for the step that begins at m.x, on the branches of the block; whether it has rates. */
+/* Solve the step that begins at m.x, on the branches of the block; returns whether it has rates. */
 static int MODEL(solve_again)(MODEL(batch) *b, const MODEL(segment) *segment, double t, double h)
 {
     MODEL(block) *m = &b->m;

@@ -14,7 +14,7 @@
  */
 #if defined(COSTATES)
 #define MOST_SCALED 1e-4
-/* What the mean temperature may be off, times the entropy taken, as a part of that entropy's round-off. */
+/* What the mean temperature may be off, times the entropy taken, as a fraction of that entropy's round-off. */
 #define MOST_BENT 0.03
 
 /* The temperature of the first body with more entropy than at a point; `x` and `costate` are written. */

@@ -1,10 +1,10 @@
 /*
  * Samples of runs. Comes after replay.c.
  *
- * A sample within a step is the end of a step of its own from where that step begins, so that its
+ * A sample within a step is the end of a separate step with the same beginning, so that its
  * balances close, too. The run goes on from its own step: it does not depend on samples.
  *
- * Each step for a sample has an error of its own. Where little is produced between two samples, the
+ * Each such step has its own error. Where little is produced between two samples, the
  * later one might show less heat or entropy produced than the one before. Then its step is repeated
  * from the sample before (RESUME), and so are the steps of the samples that follow, until the run
  * itself has produced as much. The same is done for a sample whose step has no solution.

@@ -14,7 +14,7 @@ typedef struct {
     double *margin;                  /* of each condition of the domain */
     const long *conditions, *strict; /* those on inputs alone, and whether equality is outside */
     long limits;
-    long steps, plants; /* at a call, and stepped at it: this one, and those behind it */
+    long steps, plants; /* steps per call; plants in the array from this one on */
 } MODEL(stepper);
 
 /* Whether the inputs lie in the domain; steps look at the conditions on states. */

@@ -9,14 +9,14 @@
  * Stops on one coordinate have one polynomial: they are computed side by side, without branches.
  */
 
-/* Parts of a step: what happens before this is at its begin. */
+/* What happens before this fraction of a step counts as at its beginning. */
 #define BEGUN 1e-6
-/* An inner state so near to its limit, relative to it, was put there by the step before. */
+/* An inner state this close to its limit, relative to it, was put there by the step before. */
 #define PUT_THERE 1e-14
-/* How near to a limit, in parts of the step, a place is found: work done there goes with its square. */
+/* Accuracy of a place, as a fraction of the step: the error of work done there goes with its square. */
 #define FOUND 1e-8
 
-/* Stops on one coordinate, side by side: so many at a time, looked for among so many. */
+/* Stops on one coordinate, side by side: the most at a time, and lanes searched at a time. */
 enum { SOME = 64, SEEN = 16 };
 
 /*
@@ -38,8 +38,8 @@ typedef struct {
 } MODEL(piece);
 
 /*
- * The piece's part up to which z follows C: to the end, or to where C reaches what is left to the
- * limit. By Newton's method and bisection, in all lanes as long as one of them moves.
+ * The piece's part up to which z follows C: to the end, or to where C has moved by the distance
+ * to the limit. By Newton's method and bisection, in all lanes as long as one of them moves.
  */
 static void MODEL(find_limits)(const MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(stops) *s)
 {

@@ -60,9 +60,9 @@ typedef struct {
     int written;   /* whether the current sample is written, though its step is repeated */
     double steady; /* the length that the error of the step before allows */
     int phase, behind, predicted, fresh, last, cuts, refused, halved;
-    int stuck;   /* whether it goes over kinks since it could not end at them */
+    int stuck;   /* whether steps go over kinks because they could not end at them */
     int crawled; /* steps in a row that are hardly longer than round-off of the time */
-    int to_round_off; /* how many steps are still solved so: see residual.c */
+    int to_round_off; /* how many more steps are solved to round-off: see residual.c */
     int settled; /* whether no switch was located after all: the step is solved to full accuracy */
     long which; /* the switch at the end of the step; -1 if none */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
@@ -77,7 +77,7 @@ typedef struct {
     long count;
 } MODEL(tape);
 
-/* Runs, and the arrays in which lanes step them. */
+/* Runs, and the working arrays of lanes. */
 typedef struct {
     MODEL(block) m;
     MODEL(tape) *tape; /* of one run, or NULL */
@@ -87,7 +87,7 @@ typedef struct {
     long count, next, samples, either; /* `either`: steps end at kinks, or go over them */
     double stop, tolerance, first, longest, fixed;
     double beyond; /* part of a step that may lie beyond the switch at its end, where no stage lies */
-    real *rate, *side, *sums, *lost, *known;       /* at the begin of a step; of the step before */
+    real *rate, *side, *sums, *lost, *known;       /* at the beginning of a step; of the step before */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
@@ -96,36 +96,34 @@ typedef struct {
 } MODEL(batch);
 
 enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
-/* So many steps, with their samples, are solved to round-off after one whose residuals cannot be heat. */
+/* Steps, with their samples, that are solved to round-off after one whose residuals cannot be heat. */
 enum { TO_ROUND_OFF = 20 };
 /*
- * A run ends after so many steps in a row that are at most CRAWL times the time at its end: at the edge
+ * A run ends after this many steps in a row that are at most CRAWL times the time at its end: at the edge
  * of the domain a law may grow without bound, and 10^15 steps would not lead it over.
  */
 enum { MOST_CRAWLED = 1000 };
 #define CRAWL 4e-16
 /* Halvings of a fixed step in all, until one of full length succeeds: a run with more fails. */
 enum { MOST_HALVED = 1000 };
-/* The shortest part of a fixed step. */
+/* The shortest fraction of a fixed step. */
 #define SHORTEST_PART 1e-15
 /* A mode at kinks is kept for TRIED solves; the slower one is tried anew after AGAIN comparisons. */
 enum { TRIED = 32, AGAIN = 12 };
-/* The step length goes with the error to about this power where steps contain kinks. */
+/* The step length is proportional to about this power of the error where steps contain kinks. */
 #define OVER_KINKS (-1.0 / 3.0)
-/*
- * Safety factor: the next step is this part of the one whose estimated error would equal the tolerance.
- */
+/* Safety factor: the next step is this times the one whose estimated error equals the tolerance. */
 #define PART_OF(over) ((over) ? 0.9 : 0.82)
 /* An error may be small by chance: a step is at most this much longer than the last one allowed. */
 #define SUDDEN 1.5
 /* A refused step is repeated up to where a path functional begins to yield, if before this part. */
 #define YIELDS 0.999
-/* Parts of a step: a switch this near to its end, or to its beginning, counts as there. */
+/* A switch within this fraction of a step from its end, or its beginning, counts as there. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
 /*
- * How far a step may go beyond its switch, where no stage lies.  What a kink adds to the error goes
- * with the square of that, about this part of the tolerance; what a jump adds, in proportion.
+ * How far a step may go beyond its switch, where no stage lies.  A kink adds an error proportional to
+ * the square of that, about this fraction of the tolerance; a jump, one proportional to it.
  */
 #define BEYOND 0.01
 
@@ -282,7 +280,7 @@ static void MODEL(increments)(const MODEL(batch) *b, real h, real *out)
     }
 }
 
-/* The polynomial through a step's stage rates, at a part of the step. */
+/* The polynomial through a step's stage rates, at a fraction of the step. */
 static void MODEL(rates_at)(const MODEL(block) *m, const real *rates, real at, real *out)
 {
     real weight[STAGES];
