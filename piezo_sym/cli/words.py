@@ -88,13 +88,13 @@ def _arguments(
     words = [part.rpartition("=") for part in text.split(",")]
     plain = [value for _, equals, value in words if not equals]
     named = {word.strip(): value for word, equals, value in words if equals}
-    places = [*_places(name), *[""] * len(plain)]  # more than it takes are refused later
+    places = [*_signal_parameters(name), *[""] * len(plain)]  # more than it takes are refused later
     given = [read(value, place) for value, place in zip(plain, places, strict=False)]
     return given, {place: read(value, place) for place, value in named.items()}
 
 
-def _places(name: str) -> dict[str, Any]:
-    """Return the names of a signal's numbers, and their defaults."""
+def _signal_parameters(name: str) -> dict[str, Any]:
+    """Return the names of a signal's parameters, with their defaults."""
     from piezo_sym.run.signals import SIGNALS
 
     return {p.name: p.default for p in signature(SIGNALS[name]).parameters.values()}
@@ -105,7 +105,7 @@ def spelled(name: str) -> str:
     words = (
         (word if default is Parameter.empty else f"{word}={default:g}")
         + (f" [{UNITS[word]}]" if word in UNITS else "")
-        for word, default in _places(name).items()
+        for word, default in _signal_parameters(name).items()
     )
     return f"{name}({', '.join(words)})"
 
@@ -178,11 +178,11 @@ class Units:
         self.assumed: list[str] = []
 
     def numbers(self, text: str, where: str) -> float | list[float]:
-        """Return a number, or a list of them for the lanes of a bank, each in its unit or SI."""
+        """Read a number, or one per lane of a bank, each with its unit or in SI."""
         return self._numbers(text, where, lambda name: self._declared.get(name, ""))
 
     def initial(self, text: str, where: str) -> float | list[float]:
-        """Return the start of a state, or a list for the lanes of a bank, in their unit or SI."""
+        """Read a state's initial value, or one per lane of a bank, with its unit or in SI."""
         return self._numbers(text, where, lambda name: self._states.get(name, ""))
 
     def _numbers(self, text: str, where: str, unit_of: Callable[[str], str]) -> float | list[float]:

@@ -1,4 +1,4 @@
-"""Text to a tree: the letters, tokens and grammar of laws.
+"""Text to a tree: the characters, tokens and grammar of laws.
 
 Input: untrusted text.  Output: a tree, or a `RefusedError`.  Length, characters and nesting are
 checked first; then Python's own parser reads the text, and only the nodes of the law language pass.
@@ -48,7 +48,7 @@ class RefusedError(Exception):
         self.what, self.expected, self.remedy = what, expected, remedy
 
 
-def check_letters(text: str) -> None:
+def check_characters(text: str) -> None:
     """Refuse a text that is too long, empty, or not plain ASCII on one line."""
     most = MAX_LENGTH_OF_A_TABLE if re.search(r"\btable *\(", text) else MAX_LENGTH
     if len(text) > most:
@@ -146,7 +146,7 @@ def parse_clause(text: str) -> tuple[Cmp, ...]:
 
 def _parsed(text: str) -> ast.expr:
     """Return Python's syntax tree of a text, after checks of its characters and tokens."""
-    check_letters(text)
+    check_characters(text)
     check_tokens(text)
     try:
         return ast.parse(text.strip(), mode="eval").body

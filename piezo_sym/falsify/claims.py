@@ -55,8 +55,8 @@ class Claim:
     equal: tuple[str, ...] = ()
 
     @property
-    def climbs(self) -> bool:
-        """Whether value/scale varies smoothly, so that a descent makes sense."""
+    def is_smooth(self) -> bool:
+        """Whether value/scale varies smoothly, so that the attack can descend along it."""
         return self.id in {"passive", "conductance", "temperature"}
 
 
@@ -64,7 +64,7 @@ def claim_of(probe: Probe, id_: str, element: str) -> Claim | None:
     """Return the claim of a row, or None if it cannot be evaluated at a point."""
     circuit = probe.iphs.circuit
     ports = circuit.by_element.get(element)
-    # of a storage, whichever of its states the entropy is
+    # for a storage with an entropy, the body, which need not be its last port
     match id_, circuit.bodies.get(element) or (ports[-1] if ports else None):
         case (("passive" | "conductance"), DissipativePort()):
             heat = Sym(f"heat {element}")

@@ -67,7 +67,7 @@ class Track:
                 key = self._least(seen, applies)
             else:
                 return
-        if self.claim.climbs or (key < 0).any():
+        if self.claim.is_smooth or (key < 0).any():
             self._keep(kind, seen, np.where((key < 0) & seen.extreme, key / 1000, key))
 
     def _least(self, seen: Evaluation, applies: Mask) -> Array:
@@ -75,12 +75,12 @@ class Track:
         least: Array = np.full(applies.shape, 2.0)
         for said in self.claim.says:
             value, scale = seen.of(said.value).value, seen.of(said.scale).size
-            if not self.claim.climbs and not (value < -TOLERANCE * scale).any():
+            if not self.claim.is_smooth and not (value < -TOLERANCE * scale).any():
                 continue
             ratio = np.clip(value / scale, -1, 1)
             sign = np.where(np.isnan(value), 2, np.sign(value))
             ratio = np.where(np.isnan(ratio), sign, ratio)
-            if not self.claim.climbs:
+            if not self.claim.is_smooth:
                 ratio = np.where(ratio < -TOLERANCE, ratio, 1)
             ratio = np.where(value == 0, ZERO if said.strict else 2, ratio)
             least = np.minimum(least, np.atleast_2d(ratio).min(axis=0))
@@ -177,9 +177,9 @@ class Hunt:
     def _descended(self) -> Iterator[tuple[str, Space, Array]]:
         """Yield points near the worst points of each row, repeatedly."""
         for n in range(DESCENTS):
-            climbing = (track for track in self.tracks if track.claim.climbs)
+            smooth = (track for track in self.tracks if track.claim.is_smooth)
             worst = (
-                sorted(chain(*track.worst.values()), key=itemgetter(0))[:KEPT] for track in climbing
+                sorted(chain(*track.worst.values()), key=itemgetter(0))[:KEPT] for track in smooth
             )
             starts = [found for own in worst for found in own if found[1] is self.space]
             if len(starts) > (most := self.space.most // (4 * CHILDREN)):
@@ -210,7 +210,7 @@ class Hunt:
 
     @cached_property
     def sides(self) -> list[Sides]:
-        """Both sides of the kinks found."""
+        """Points on both sides of the kinks found."""
         return [sides_of(self.space, roots) for roots in self.draw.roots]
 
     def _contradiction(

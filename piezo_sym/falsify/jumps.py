@@ -63,7 +63,7 @@ class Sides:
 
 
 def sides_of(space: Space, roots: Roots) -> Sides:
-    """Return both sides of kinks, which are the same for all rows."""
+    """Return points on both sides of kinks; all rows use the same."""
     step = roots.high - roots.low
     # on an edge itself either branch may be taken
     low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high + step))

@@ -54,7 +54,7 @@ class Roots:
 @final
 @dataclass(eq=False)
 class Draw:
-    """A source of points of a space."""
+    """Draws random points of a space, and points at kinks."""
 
     space: Space  # the space of the points
     known: Array  # points inside the domain to start from; the first has the spec's own values
@@ -76,7 +76,7 @@ class Draw:
         return np.concatenate([points[:, :0], *kept], axis=1)
 
     def kinks(self, bases: Array, most: int) -> Array:
-        """Return points on edges and next to them, found along one column from each base."""
+        """Return points on edges and next to them, found by varying one column of each base."""
         roots = self._bisected(self._crossed(bases, most))
         self.roots.append(roots)
         points = np.concatenate([roots.at(v) for v in self._near(roots)], axis=1)

@@ -161,7 +161,7 @@ class Space:
         return dict(zip(names, parts, strict=True))
 
     def own(self, first: int = 0) -> Array:
-        """Return the spec's own values as one point, with the lanes of a bank from `first` on."""
+        """Return the spec's own values as one point; its lane 0 is lane `first` of each bank."""
         parts = ((self._given[name], lane) for name, lane in self.columns)
         return np.array([[part[(first + lane) % len(part)]] for part, lane in parts])
 

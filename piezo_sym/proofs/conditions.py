@@ -35,9 +35,9 @@ def domain_conditions(
 ) -> str:
     """Return conditions for [domain], such as n > 0, under which all claims hold, or ''.
 
-    They are about parameters, inputs, states and temperatures; for letters stands what `ties` say.
-    The spec's own values decide between > 0 and < 0 for a claim ``!= 0``, and whether they satisfy
-    the conditions is said.  Where no point satisfies them, it is said what falls with S.
+    They use parameters, inputs, states and temperatures; `ties` replace the letters of laws.  For a
+    claim ``!= 0`` the spec's own values decide between > 0 and < 0.  The text says whether these
+    values satisfy the conditions; if no point does, it says which temperature falls with S.
     """
     points, letters = spec_points(iphs), {tie.left: tie.right for tie in ties}
     failed = [q for q in questions if fails(q)]
@@ -46,7 +46,7 @@ def domain_conditions(
         for c in (q.original for q in failed)
     ]
     known = frozenset[str]().union(*points)
-    # [domain] takes no =, as of a jump
+    # [domain] takes no =, which claims on jumps have
     if not broken or not all(claim.op != "=" and known >= {*names(claim)} for claim in broken):
         return ""
 
@@ -64,7 +64,7 @@ def domain_conditions(
         rest = tuple(c for c in found if c != claim)
         if rest and mended(rest):
             del found[claim]
-    return in_words([*found.values()], kept=all(_kept(c, points) for c in found))
+    return in_words([*found.values()], kept=all(_satisfied(c, points) for c in found))
 
 
 def _no_point_satisfies(
@@ -90,7 +90,7 @@ def _conditions(
         bare = _at_root(_without_factors(claim, positive))
         ops = (">", "<") if bare.op == "!=" else (bare.op,)
         ways = [Cmp(op, bare.left, bare.right) for op in ops]
-        way = next((way for way in ways if _kept(way, points)), ways[0])
+        way = next((way for way in ways if _satisfied(way, points)), ways[0])
         warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
         text = condition_text(way)
         found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
@@ -116,13 +116,13 @@ def _at_root(claim: Cmp) -> Cmp:
     return claim
 
 
-def _kept(condition: Cmp, points: Iterable[Mapping[str, Value]]) -> bool:
+def _satisfied(condition: Cmp, points: Iterable[Mapping[str, Value]]) -> bool:
     """Return whether the values of the spec satisfy a condition."""
     return all(all_hold((condition,), point) for point in points)
 
 
 def _falling(failed: Iterable[Question], points: Iterable[Mapping[str, Value]]) -> str:
-    """Return that a temperature, or its slope, is negative for the values of the spec, or ''."""
+    """Return a text if a temperature, or its slope, is <= 0 for the values of the spec, or ''."""
     for question in failed:
         for point in points if question.rising else ():
             if all_hold((Cmp("<=", question.original.left, ZERO),), point):
