@@ -76,7 +76,7 @@ class UsageError(PiezoError):
 
 @final
 class UnknownNameError(UsageError):
-    """A name that a call gives a value, and that there is not."""
+    """A call that gives a value to a name that does not exist."""
 
     name: str = ""
 

@@ -188,7 +188,7 @@ def _linear(
 
 
 def _is_steep(derivatives: Any, p: Any, point: FloatArray, there: FloatArray) -> bool:
-    """Return whether a derivative has no bound near a point, as that of a root at zero."""
+    """Return whether a derivative is unbounded near a point, like that of a root at zero."""
     step = np.diag(np.maximum(4 * np.finfo(float).eps * np.abs(point), LEAST))
     for side in (1.0, -1.0):
         around = (point[:, None] + side * times * step for times in NEAR)

@@ -1,4 +1,4 @@
-"""The user's cache: generated modules, templates, and all files of what is proved; and a loader.
+"""The user's cache: generated modules, templates, and all files of proved specs; and a loader.
 
 Input: the hash of a spec or of its shape, and a module's name.  Output: a loaded module, a
 `Template`, or texts.  What was made by other sources of the package, or proved with other
@@ -62,7 +62,7 @@ def keep_template(shape: str, template: Template) -> None:
 
 
 def kept_files(key: str) -> Mapping[str, str] | None:
-    """Return the text of every file that is generated of a proved model, if it is in the cache.
+    """Return the texts of all files generated from a proved model, None if they are not cached.
 
     `key` is that of the model: see `Model.key`.
     """
@@ -71,7 +71,7 @@ def kept_files(key: str) -> Mapping[str, str] | None:
 
 
 def keep_files(key: str, files: Mapping[str, str]) -> None:
-    """Write the text of every file of a proved model to the cache, if possible."""
+    """Write the texts of all files generated from a proved model to the cache, if possible."""
     _write_record(_folder(key, PROVED_FOLDER), dict(files))
 
 

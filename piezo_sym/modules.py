@@ -50,13 +50,13 @@ def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType
     """Return the generated module of a spec, derived and proved if it is not known yet.
 
     Raises `FileError`, `SpecError`, `NetworkError` or `ProofError` if the spec cannot be read,
-    derived or proved; one that is not proved runs if it was generated all the same, by `generate
-    --allow-unproved`, in the working folder.  Raises `UsageError` if `spec` is none of these.
+    derived or proved; one that is not proved runs all the same if `generate --allow-unproved` wrote
+    its module to the working folder.  Raises `UsageError` if `spec` is none of these.
 
     Parameters
     ----------
     spec : the name of a shipped spec, the path of a spec file, or a `Model`.
-    stages : of the steps of a run that follows: they are compiled while the module is proved.
+    stages : per step of the run that follows; steps are compiled while the module is proved.
     """
     name, sha256, content = _identity(spec)
     module = _available(name, sha256)

@@ -82,7 +82,7 @@ class Worker:
         self._kill(process)
         self.status = process.wait()
         for pipe in (process.stdin, process.stdout):
-            with suppress(OSError):  # of what was not sent
+            with suppress(OSError):  # from flushing what was not sent
                 pipe and pipe.close()
 
     def forget(self) -> None:
@@ -167,9 +167,9 @@ def _received(results: BinaryIO) -> Iterator[T]:
 
 
 def _copied(work: Iterator[T], results: BinaryIO, alive: int) -> NoReturn:
-    """Do the work in the copy, until it is done or the process that is copied has ended."""
+    """Do the work in the forked copy, until it is done or the original process has ended."""
     try:
-        nothing = os.open(os.devnull, os.O_RDWR)  # others wait for the ends of its pipes
+        nothing = os.open(os.devnull, os.O_RDWR)  # other processes wait for its pipes to close
         os.dup2(nothing, 0)
         os.dup2(nothing, 1)
         for worker in _workers:

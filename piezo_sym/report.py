@@ -150,7 +150,7 @@ class Report:
         return all(row.verdict is not Verdict.OPEN or row.id == "rounding" for row in self.rows)
 
     def raise_if_not_proved(self) -> None:
-        """Raise on a required property: a unit, else one refuted, else open for its own reasons.
+        """Raise if a required property is not proved: names units first, then refuted, then open.
 
         Raises
         ------
@@ -215,7 +215,7 @@ def smt2(report: Report, made: str) -> str:
 
 def proofs_json(report: Report, model: Model, made: str) -> str:
     """Return every row of a report and what was to be shown for it, as JSON."""
-    entries = zip_longest(report.rows, report.stated)  # units have rows alone
+    entries = zip_longest(report.rows, report.stated)  # units have no `stated`
     content = {
         "made": made,
         "model": report.model,

@@ -55,7 +55,7 @@ class _Text(StrPrinter):  # type: ignore[misc]
 
 
 def _with_magnitudes(expr: sp.Expr, magnitude: Any) -> sp.Expr:
-    """Return an expression with branches written as ``abs`` and ``sign`` where they are those."""
+    """Return an expression with choices that equal ``abs`` or ``sign`` written as these."""
     known = {choice: _named(choice, magnitude) for choice in expr.atoms(sp.Piecewise)}
     return expr.xreplace({choice: named for choice, named in known.items() if named is not None})
 

@@ -51,7 +51,7 @@ class SymbolicLaneSum(sp.Expr):  # type: ignore[misc]
         return total
 
     def has(self, *patterns: Any) -> bool:
-        """Return whether it contains a pattern; hides choices, which SymPy would move outside."""
+        """Return whether the sum has a pattern; denies choices, which SymPy would move outside."""
         return bool(super().has(*(p for p in patterns if p is not sp.Piecewise)))
 
     def _latex(self, printer: Any, exp: Any = None) -> str:

@@ -91,7 +91,7 @@ class SymbolTable(Mapping[str, sp.Symbol]):
         return iter(self.symbols)
 
     def __len__(self) -> int:
-        """Return how many names there are."""
+        """Return the number of names."""
         return len(self.symbols)
 
     def law(self, tree: Expr, letters: Mapping[str, sp.Expr]) -> sp.Expr:

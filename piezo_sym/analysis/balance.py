@@ -167,7 +167,7 @@ def scan(
 def temperature_range(
     strobe: Stroboscope, given: tuple[float, float] | None
 ) -> tuple[float, float]:
-    """Return the range to search [K]: the user's, or `HOTTEST` times the module's start."""
+    """Return the range to search [K]: the user's, or up to `HOTTEST` times the default start."""
     if given is None:
         T = strobe.temperature(strobe.start)
         default = strobe.temperature(replace(strobe, initial={}).start)

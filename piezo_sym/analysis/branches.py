@@ -26,7 +26,7 @@ from piezo_sym.run.module import GeneratedModule, checked
 from piezo_sym.run.parameters import LaneValue
 
 STEPS = 256  # per period
-SAME = 1e-3  # zeros that differ by less in log T are one
+SAME = 1e-3  # zeros closer than this in log T count as one
 
 
 @final
@@ -36,8 +36,8 @@ class Jump:
 
     Attributes
     ----------
-    frequency : of the end [Hz].
-    upward : whether the frequency rises towards it.
+    frequency : at the end [Hz].
+    upward : whether the stable part reaches the end with rising frequency.
     temperature : mean temperature of the body there [K].
     lands : mean temperature of the stable state after the jump [K], nan if none is known.
     """

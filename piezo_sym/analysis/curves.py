@@ -94,7 +94,7 @@ def trace(
 def _next(
     strobe: Stroboscope, point: CurvePoint, tangent: FloatArray, length: float, span: FloatArray
 ) -> CurvePoint | None:
-    """Return the next point, at about `length` or where f leaves its range, or None."""
+    """Return the next point, about `length` away or at the end of f's range, or None."""
     guess = point.place + length * tangent
     across, hint = np.array([-tangent[1], tangent[0]]), point.steepness
     if not span[0, 0] <= guess[0] <= span[0, 1]:

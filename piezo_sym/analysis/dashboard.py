@@ -65,7 +65,7 @@ def plot(run: xarray.Dataset) -> Figure:
         _small_legend(axes)
     for axes in grid[len(panels) :]:
         axes.remove()
-    for axes in grid[max(0, len(panels) - ACROSS) : len(panels)]:  # the lowest of each column
+    for axes in grid[max(0, len(panels) - ACROSS) : len(panels)]:  # the lowest panel of each column
         axes.tick_params(labelbottom=True)
     figure.supxlabel("time [s]", fontsize=LABEL)
     figure.suptitle(str(run.attrs.get("model", "run")), fontsize=LABEL + 1)
@@ -122,7 +122,7 @@ def _shown(names: list[str]) -> str:
 def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
     names: dict[str, list[str]] = {}
     for name in map(str, run.data_vars):
-        doubled = name.startswith("y_") and run[name].attrs.get("units") == "K"  # a body's T
+        doubled = name.startswith("y_") and run[name].attrs.get("units") == "K"  # also T_<body>
         if "time" not in run[name].dims or name in LEDGER or name.startswith(SUMS) or doubled:
             continue
         names.setdefault(str(run[name].attrs.get("units", "1")), []).append(name)

@@ -128,7 +128,7 @@ def last_period(run: xarray.Dataset, frequency: float) -> xarray.Dataset:
 def drawn(run: xarray.Dataset, port: str) -> xarray.DataArray:
     """Return the integral of a port's output y since the first sample: a charge, a displacement.
 
-    By a cubic spline through the samples.
+    A cubic spline through the samples is integrated.
 
     Parameters
     ----------

@@ -7,8 +7,8 @@ an `OperatingPoint`, or a `RunError` that says why there is none.
 
 Steps of the implicit Euler method, each longer than the last, follow the motion from the initial
 state towards rest; Newton's method ends the search.  Linear functions of the state that the motion
-conserves, such as the difference in length of parallel springs, keep their initial values; so do
-directions in which the rates do not change (a current that circulates within dead zones).
+conserves, such as the difference in length of parallel springs, keep their initial values; so does
+the state in directions that do not change the rates (a current that circulates in dead zones).
 """
 
 from collections.abc import Mapping

@@ -22,7 +22,7 @@ GOLDEN = 0.6180339887498949
 PROBES = np.sort(np.r_[0.0, np.modf(np.arange(1, 64) * GOLDEN)[0]])
 MOST_STEPS = 1 << 14  # per period: enough for a sine of 2048 cycles in it
 COMMON = "give the frequency that the inputs have in common"
-FREQUENCIES = 33  # checked in a range of frequencies, with its ends
+FREQUENCIES = 33  # checked in a range of frequencies, ends included
 FOLLOW = "let the inputs follow the frequency"
 DRIVEN = "a function of the frequency in Hz, such as lambda f: {'V_in': sine(100, f)}"
 

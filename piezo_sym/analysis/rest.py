@@ -40,7 +40,7 @@ class Approach:
     """The way to a state of rest."""
 
     states: list[FloatArray]  # x (n,) after each step, with the start
-    size: FloatArray  # the greatest magnitude of each coordinate (k,); 0 where none moved
+    size: FloatArray  # the greatest magnitude of each coordinate (k,); 0 where it never moved
     moving: FloatArray | None  # rates (k,) at the end of a way that does not end at rest
 
 
@@ -79,12 +79,12 @@ class RestSearch:
             return np.asarray(self.module.rhs(x, self.u, self.parameters)[self.rows])
 
     def jacobian(self, x: FloatArray) -> FloatArray:
-        """Return the Jacobian (n, n) of all rates by all states."""
+        """Return the Jacobian (n, n) of the rates with respect to the states."""
         with np.errstate(all="ignore"):
             return np.asarray(self.module.jacobian(x, self.u, self.parameters))
 
     def slope(self, x: FloatArray) -> FloatArray:
-        """Return the Jacobian (k, k) of the rates dz/dt by z."""
+        """Return the Jacobian (k, k) of the rates dz/dt with respect to z."""
         with np.errstate(all="ignore"):
             return np.asarray(self.jacobian(x)[self.rows] @ self.basis)
 
@@ -95,7 +95,7 @@ class RestSearch:
         return bool(np.all(held(self.module, margins)) and np.isfinite(self.rates(x)).all())
 
     def find(self, start: FloatArray) -> tuple[RestSearch, FloatArray, FloatArray]:
-        """Return the search with the fewest coordinates, the state at rest, and their sizes.
+        """Return the search with the fewest coordinates, the state at rest, and coordinates' sizes.
 
         Raises
         ------

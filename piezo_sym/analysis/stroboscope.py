@@ -44,8 +44,8 @@ if TYPE_CHECKING:
 Rows: TypeAlias = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
 SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
-SPREAD = (-2.0, 2.0)  # powers of ten between which random states are spread, over their sizes
-ENTROPY_SPREAD = 1e-2  # of the entropy, over its size
+SPREAD = (-2.0, 2.0)  # powers of ten: factors from the sizes of states to random states
+ENTROPY_SPREAD = 1e-2  # factor from the entropy's size to random entropies
 SPARE = 16  # random states beyond the least number
 CONSTANT = 1e-9  # the largest change of a conserved quantity in a period, over the sizes of states
 
@@ -55,7 +55,7 @@ CONSTANT = 1e-9  # the largest change of a conserved quantity in a period, over 
 class Period:
     """One period from a state x (n,)."""
 
-    end: FloatArray  # the state (n,) after it
+    end: FloatArray  # the state (n,) after the period
     size: FloatArray  # largest magnitude of each state (n,); for a bank that of all its lanes
     mean: float  # temperature of the body [K]
     coldest: float
@@ -164,7 +164,7 @@ class Stroboscope:
 
     @cached_property
     def repeating(self) -> Rows:
-        """Which states (n,) must repeat: if `free`, not those that `moving_nothing` has."""
+        """Which states (n,) must repeat: all, or without `moving_nothing` if `free`."""
         return ~self.moving_nothing if self.free else np.ones(self.start.size, dtype=bool)
 
     @cached_property
@@ -178,9 +178,9 @@ class Stroboscope:
 
     @cached_property
     def conserved(self) -> FloatArray:
-        """Linear functions (k, n) of repeating states that are conserved; none in doubtful cases.
+        """Linear functions (k, n) of repeating states that are conserved; none if in doubt.
 
-        They are zero on the rates at random states of the domain, and constant over a period.
+        Applied to the rates at random states they give zero; over a period they are constant.
         """
         none = np.empty((0, self.start.size))
         try:

@@ -11,7 +11,7 @@ from typing import TypeAlias, final
 
 import numpy as np
 
-#: Least duration of a measurement [s], in which short calls are repeated.
+#: Least duration of a measurement [s]; short calls are repeated to reach it.
 SHORTEST = 0.004
 #: Total time of a call [s] after which it is not measured again.
 PATIENCE = 20.0

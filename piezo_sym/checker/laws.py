@@ -164,7 +164,7 @@ def _factors(node: Node) -> tuple[list[Node], list[Node]]:
 
 
 def derivative(node: Node, by: Any) -> Node:
-    """Return the derivative of a law by a symbol, branch by branch; of a sum that of one lane."""
+    """Return the derivative of a law in a symbol, on each branch; for a sum, that of one lane."""
     if by not in symbols(node) or node.op == "sym":
         return num(int(node.op == "sym" and node.value == by))
     if node.op in KINKS:  # again, as definitions such as that of saturate have kinks

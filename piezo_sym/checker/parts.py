@@ -14,7 +14,7 @@ SIZES = {"stiffness": ("spring", "f", "v"), "capacitance": ("capacitor", "v", "i
 
 
 def stem(name: str) -> str:
-    """Return the name in the spec of an element, which may be one state of a storage."""
+    """Return an element's name in the spec: for one state of a storage, the storage's."""
     return name.partition(".")[0]
 
 

@@ -101,7 +101,7 @@ class _Query:
 
     def _function(self, name: str, y: Node, x: Node, *more: Node) -> None:
         """Assert the facts on a value of a smooth function, and on pairs with earlier values."""
-        if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a; a > 0 for the other
+        if (name, x.op) in (("log", "exp"), ("exp", "log")):  # log(exp(a)) = a, exp(log(a)) = a > 0
             self.add(compare(y, "=", x.args[0]), *[compare(x.args[0], ">")] * (name == "exp"))
         others, known = self.calls.setdefault((name, *more), []), SMOOTH[name]
         pairs = [(known.pairs, {"a": a, "b": b}) for a, b in others[:MOST_PAIRS]]

@@ -110,7 +110,7 @@ class _Audit:
         self.done[name, owner] = reason
 
     def _unlike(self, subject: str) -> str:
-        """Return what is not that of the network, or ''."""
+        """Return what differs from the network, or ''."""
         found = self.found.reasons.get(subject, "")
         for (about, what), own in self.found.branched.items():
             if not found and about == subject and not vanishes(*own, self.prover):

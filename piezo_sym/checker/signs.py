@@ -29,7 +29,7 @@ Found = frozenset[int]
 
 
 class Signs:
-    """Signs on lo < t <= hi; lo = hi is one point, and trees are then free of t."""
+    """Signs of trees for lo < t <= hi; if lo = hi, at one point, trees do not contain t."""
 
     def __init__(self, lo: Fraction, hi: Any, prover: Prover) -> None:
         self.lo, self.hi, self.prover, self.known = lo, hi, prover, dict[Node, Found]()

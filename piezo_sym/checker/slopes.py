@@ -29,7 +29,7 @@ def vanishes(difference: Node, states: Iterable[Any], prover: Prover) -> bool:
 
 
 def equal(claim: Node, path: Path, prover: Prover) -> bool:
-    """Return whether two laws are equal on each branch, on an edge for the state that it fixes."""
+    """Return whether two laws are equal on each branch; on an edge, at the state that it fixes."""
     difference = build("x - z", x=claim.args[0], z=claim.args[1])
 
     def on_edge(tree: Node, here: Path) -> bool:
@@ -41,7 +41,7 @@ def equal(claim: Node, path: Path, prover: Prover) -> bool:
 
 
 def _on_branches(law: Node, path: Path, prover: Prover, or_else: Test) -> bool:
-    """Return whether each branch is zero, or has something else that is enough, or is empty."""
+    """Return whether each branch is zero, passes the test `or_else`, or is empty."""
     try:
         return all(
             count < MOST
@@ -87,7 +87,7 @@ def _is_zero(tree: Node, path: Path, prover: Prover) -> bool:
 
 
 def _edges(path: Path, states: Iterable[Any], prover: Prover) -> Iterator[dict[Any, Node]]:
-    """Yield the states that have one value on a path for given parameters, with that value."""
+    """Yield each state that a path's conditions fix for given parameters, with its value."""
     for state, (left, right) in product(states, (c.args for c in path if c.value in ("<=", ">="))):
         difference = build("x - z", x=left, z=right)
         field = Field()

@@ -114,7 +114,7 @@ class Finding:
         return self.field.of(sym(("N", bank, slot[1]))) if slot[1] else ONE
 
     def given(self, role: str, owner: str, lane: int) -> Ratio:
-        """Return an input, a co-state or a temperature by its element."""
+        """Return the input, co-state or temperature (`role` u, E or T) of an element."""
         return self.symbol((role, self.spec.elements[owner].input if role == "u" else owner), lane)
 
     def published(self, node: Node, bound: Mapping[str, int]) -> Ratio:
@@ -201,7 +201,7 @@ class Finding:
                 self.letters[name] = subs(tree, words)
 
     def _gradient(self) -> None:
-        """Compare the energy's derivatives, in a bank by the state of one lane, with co-states."""
+        """Check that the energy's derivatives, in a bank by one lane's state, are the co-states."""
         energy, states = self.text.energy, self.spec.states
         self.published(energy, {})  # raises if a name of a lane stands outside of sums
         words = {name: self.spec.words.get(name, ("", "")) for name in symbols(energy)}

@@ -49,7 +49,7 @@ class Stage:
 @final
 @dataclass(frozen=True)
 class Slopes:
-    """The derivative of the rates by the state at a point, on given branches."""
+    """The Jacobian of the rates at a point, on given branches."""
 
     quantities: tuple[Quantity, ...]
     entries: tuple[Entry, ...]

@@ -171,7 +171,7 @@ class _Chain:
         self.slopes: dict[str, _Slope] = {state.name: _Slope(ONE)}
 
     def differentiate(self, quantity: Quantity) -> None:
-        """Find the derivative of a quantity by the state; name it if it has two names or more."""
+        """Find a quantity's derivative in the state; name it if it has two names or more."""
         self.word = f"d{quantity.name}_d{self.state.name}"
         slope = self.of(quantity.value, quantity.bank)
         if slope == _Slope():

@@ -140,7 +140,7 @@ class Program:
     counts: Mapping[str, int]  # sizes of banks, in order
     quantities: tuple[Quantity, ...]  # in an order in which they can be computed
     functions: tuple[ModuleFunction, ...]  # what the module offers, with `limits`
-    #: The derivative of `rhs` by the state; an entry that is not listed is zero.
+    #: The derivative of `rhs` with respect to the state; an entry that is not listed is zero.
     jacobian: tuple[Entry, ...]
     limits: tuple[Limit, ...]
     taken: frozenset[str]  # every name in use, so that printers can add their own
@@ -221,7 +221,7 @@ def needed(
 
 
 def bank_of(node: Node, lanes: Mapping[str, str]) -> str | None:
-    """Return the bank per lane of which an expression has a value; a sum over lanes has none."""
+    """Return the bank over whose lanes an expression varies; None if none, as for a lane sum."""
     if isinstance(node, LaneSum):
         return None
     return next((lanes[name] for name in names(node) if name in lanes), None)

@@ -197,7 +197,7 @@ def _choice(then: Expr, condition: Cmp, other: Expr) -> Expr:
 
 
 def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
-    """Return the derivative of a function by each of its arguments."""
+    """Return the derivative of a function with respect to each of its arguments."""
     value = Call(function, args)
     return tuple(rule(text, args[0], args[-1], value) for text in RECORDS[function].slopes)
 
@@ -284,6 +284,6 @@ def compared(node: Expr) -> Expr:
 
 
 def is_affine(law: Expr, variables: Iterable[str]) -> bool:
-    """Return whether a law is affine in some variables together."""
+    """Return whether a law is jointly affine in some variables."""
     used = {*variables} & {*names(law)}
     return all(used.isdisjoint(names(derivative(law, name))) for name in used)

@@ -155,7 +155,7 @@ class _Edge:
     def joined(self, otherwise: Otherwise | None) -> Expr | None:
         """Return the antiderivatives of both sides, shifted to meet at the edge.
 
-        They are found by rules in the name itself, or by `otherwise` in the distance from the edge.
+        Rules integrate over the name itself, `otherwise` over the distance from the edge.
         """
         parts = _antiderivatives(self.sides, self.name, None, self.positive)
         if not parts and otherwise:
@@ -185,7 +185,7 @@ class _Edge:
         return divided(neg(inserted(core, {self.name: ZERO})), derivative(core, self.name))
 
     def _by_name(self, part: Expr, distance: Expr) -> Expr:
-        """Return an antiderivative by the distance as one by the name."""
+        """Return an antiderivative over the distance as one over the name."""
         return divided(tidied(inserted(part, {self.name: distance})), self.slope)
 
     def _outward(self) -> tuple[Expr, Expr]:

@@ -73,7 +73,7 @@ def write_comparison(condition: Cmp, style: Style) -> str:
 
 
 def piece(node: Expr, style: Style) -> Piece:
-    """Return `node` as text, with the strength of its outermost operator."""
+    """Return `node` as text, with the precedence of its outermost operator."""
     match node:
         case Num(value):
             return style.number(value)

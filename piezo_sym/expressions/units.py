@@ -228,7 +228,7 @@ def _meant(name: str, text: str) -> str:
     text = re.sub(rf"(?<![A-Za-z]){name}(?![A-Za-z])", two, text)
     if two:
         return f"write {quote(text or two)}"
-    alike = _registry().parse_unit_name(name, case_sensitive=False)  # mHenry
+    alike = _registry().parse_unit_name(name, case_sensitive=False)  # as mHenry
     for prefix, root, _ in (unit for unit in alike if unit[1] in UNITS):
         symbol = str(_registry().get_symbol(prefix + root)).translate(ASCII)
         return f"did you mean {quote(symbol)}?"

@@ -49,7 +49,7 @@ class System:
 
     @cached_property
     def drive(self) -> LaneMatrix:
-        """The variables B^T E + D^T u conjugate to W: W times it is the heat, over processes."""
+        """The variables z = B^T E + D^T u, over processes; W_k z_k is the heat of process k."""
         return self.B.T @ self.E + self.D.T @ self.u
 
     @cached_property

@@ -29,7 +29,7 @@ from piezo_sym.spec.tables import laws, starts
 
 #: Tolerance on co-states of initial values, relative to their terms.
 CLOSE = 1e-9
-#: States of one joint; the inverse of a larger matrix would have thousands of terms.
+#: The most states of one joint; the inverse of a larger matrix would have thousands of terms.
 MOST_KEPT = 3
 TWO = Num(Fraction(2))
 
@@ -39,10 +39,10 @@ TWO = Num(Fraction(2))
 class Member:
     """A store that is joined with others."""
 
-    #: element, store: as the spec declares it.
+    #: element, store: as the spec declares them.
     element: str
     store: Storage
-    #: Its row of Z, by which its co-state is a sum of those of the kept stores.
+    #: Its row of Z: the weights of the kept stores' co-states in its own.
     shares: tuple[Expr, ...]
     #: compliance, rest: 1/Q and x_0: its co-state is (x - x_0)/compliance.
     compliance: Expr
@@ -87,7 +87,7 @@ class Joint:
 
 
 def join_stores(laws: Laws) -> tuple[Circuit, tuple[Joint, ...]]:
-    """Return the circuit without followers, and the joints that they are in.
+    """Return the circuit without followers, and the joints that contain them.
 
     Raises `SpecError` if initial values disagree, or a law or condition depends on the state of a
     follower.  Raises `NetworkError` if too many states are joined with each other.

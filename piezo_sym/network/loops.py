@@ -30,7 +30,7 @@ from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.ports import DissipativePort
 from piezo_sym.spec.names import fresh
 
-#: Resistors in one loop; the solution of more would have thousands of terms.
+#: The most resistors in one loop; the solution of more would have thousands of terms.
 MOST = 8
 
 Definition = tuple[sp.Symbol, sp.Expr]

@@ -33,9 +33,9 @@ class Law:
     tree: Expr  # the law
     letter: str = ""  # of a dissipative law, the letter of its conjugate variable
     jumps: bool = False  # whether the spec declares it discontinuous
-    #: Of a letter that may not take every value, its value in states; None if not known.
+    #: The equation of a letter with states, if it cannot take every value; None if not known.
     ties: tuple[Cmp | None, ...] = ()
-    #: The laws of the spec, where the network turns the law round or joins stores.
+    #: The laws as the spec has them, where the network inverts the law or joins stores.
     written: tuple[Expr, ...] = ()
     rate: str = ""  # of a slip, the letter of the rate that drives it
     derived: bool = False  # whether it is an integrated energy, which the spec does not give

@@ -192,10 +192,10 @@ def _gradient(iphs: IPHS, assumptions: Assumptions) -> Iterator[Residual]:
 def _slope_questions(
     iphs: IPHS, slope: Expr, law: Expr, state: str, assumptions: Assumptions
 ) -> Iterator[Question]:
-    """Yield the questions whether branches are empty where an energy's slope is not the co-state.
+    """Ask whether each branch on which an energy's slope is not the co-state is empty.
 
-    A branch that is an edge, a = b, is compared on the edge.  The slope of either side may be used
-    there, as rows ``continuous`` show that neither energy nor law jumps.
+    On a branch that is an edge, a = b, they are compared on the edge.  The slope of either side may
+    be used there, as rows ``continuous`` show that neither energy nor law jumps.
     """
     known = tuple(condition.tree for condition in iphs.circuit.conditions)
     positive = {c.left for c in map(greater, known) if c.op == ">" and c.right == ZERO}

@@ -25,7 +25,7 @@ from piezo_sym.spec.elements.ports import Body, Coupling
 #: To six significant digits, as the numbers that a witness shows.
 ROUNDED = Context(prec=6)
 NOTHING: Mapping[str, Fraction] = MappingProxyType({})
-#: Of a longer divisor only the beginning is shown.
+#: A longer divisor is shown only in part.
 MOST_TEXT = 60
 
 

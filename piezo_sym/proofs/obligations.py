@@ -56,9 +56,9 @@ class Question:
     claim: Cmp  # what should follow, as a rule on one branch of a law
     original: Cmp  # the claim on the law as the spec has it, on which a witness is checked
     branch: tuple[Cmp, ...] = ()  # those of the assumptions that select the branch
-    #: Of a question on the border of two branches: these; a witness must show a jump.
+    #: On the border of two branches: these branches; a witness must show a jump.
     meeting: Meeting | None = None
-    #: Of a question whether a law has a value: that law; at a witness it must have none.
+    #: For the question whether a law has a value: the law; at a witness it must have none.
     law: Expr | Cmp | None = None
     #: Whether all assumptions go into the query, as a counterexample needs; a proof needs those
     #: that bind the names of the claim.

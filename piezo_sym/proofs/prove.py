@@ -60,7 +60,7 @@ def prove(
     found, method, certificate = _decide(obligation, iphs, known, solver)
     if found.verdict is Verdict.REFUTED and obligation.loose in (found.witness or {}):
         found = Finding(Verdict.OPEN, None, LOOSE)
-    # a jump is shown by values beside the edge, which must exist
+    # a jump is shown by values on both sides of the edge: the law must have values there
     if found.verdict is Verdict.REFUTED and obligation.id == "continuous":
         values = {(row.id, row.element) for row in known} & {("welldef", obligation.element)}
         found = _unproved_premise(values, known) or found

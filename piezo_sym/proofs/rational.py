@@ -79,7 +79,7 @@ class Parts:
         return replaced(law, dict(self.words))
 
     def facts(self, nonzero: frozenset[str] = frozenset()) -> Iterator[Clause]:
-        """Yield facts on the parts; divisors symbol of `nonzero` names need no premise."""
+        """Yield facts on the parts; products of `nonzero` names as divisors need no premise."""
         for part in self.parts:
             bottom = part.value.bottom
             if part.argument != part.value.top or bottom != ONE:

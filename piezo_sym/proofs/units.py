@@ -114,7 +114,7 @@ def _other_kind(fault: Check, model: Model) -> str:
 
 
 def _other_field(fault: Check, model: Model) -> str:
-    """Return the hint at the field for a whole law, k*q for stiffness = k, of this unit."""
+    """Return a hint at the field for whole laws if the unit fits: k*q is no stiffness, k is."""
     place, found = fault.place, dimension(fault.rule.left, fault.place.words)
     if not fault.rule.whole or not place.element:
         return ""

@@ -269,7 +269,7 @@ def first_step(segment: Segment, times: FloatArray, step: float) -> tuple[float,
 def dissipative_step(batch: Batch, plain: Stepping, stop: float, length: float) -> None:
     """Advance runs to `stop` by four dissipative quarter steps.
 
-    Where none is found, ordinary quarters follow: at an energy that is not convex, dissipative
+    Where these fail, ordinary quarter steps follow: at an energy that is not convex, dissipative
     steps of any length consume entropy.
     """
     failed = batch.records["failed"].copy()

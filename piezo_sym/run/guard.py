@@ -1,8 +1,8 @@
 """The domain guard: errors of runs that leave the domain in which the proofs hold.
 
 Input: states and inputs along a run.  Output: nothing, or a `RunError` with the condition, the time
-and the values that violate it.  A condition holds when its margin (left minus right side) is > 0 if
-it is strict, >= 0 otherwise; a margin of nan fails.
+and the values that violate it.  A condition holds when its margin (greater minus smaller side) is
+> 0 if it is strict, >= 0 otherwise; a margin of nan fails.
 """
 
 import re
@@ -31,7 +31,7 @@ Value = tuple[str, str, "float | FloatArray"]  # label, unit, value
 def check_start(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> None:
     """Raise `RunError` if the run cannot start from the state x (n,) at t = 0.
 
-    Stops keep their limits but for `slack`, a part of the limit.
+    Stops keep their limits but for `slack`, a fraction of the limit.
     """
     t = system.inputs.start
     u = system.inputs.segments[0].at(t)
@@ -141,7 +141,7 @@ def _input_error(
 def _times_to_check(
     system: DrivenModule, segment: Segment, samples: FloatArray, most: float
 ) -> FloatArray:
-    """Return the times in a segment at which inputs are checked, at most `most` and the samples."""
+    """Return the times at which a segment's inputs are checked: samples and at most `most` more."""
     part = (segment.stop - segment.start) / system.inputs.duration
     number = CHECKS * part * system.inputs.duration / system.inputs.max_step
     even = np.linspace(segment.start, segment.stop, 2 + int(min(number, most * part)))

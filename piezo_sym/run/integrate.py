@@ -73,7 +73,7 @@ def accepted_steps(
 
 
 def crawls(tolerance: Tolerance, rest: Segment, step: float) -> bool:
-    """Return whether LSODA would take too many such steps in what is left, which it can start."""
+    """Return whether LSODA can restart in the rest of the run, and takes too many such steps."""
     left = rest.stop - rest.start
     return tolerance.method == "LSODA" and left > max(MOST_LEFT * step, NEAR * abs(rest.stop))
 

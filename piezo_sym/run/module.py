@@ -122,13 +122,13 @@ def row_count(records: Sequence[Record], parameters: Any) -> int:
 def heat_exchanges(module: GeneratedModule) -> list[int]:
     """Return the numbers of the outputs of heat exchanges with the surroundings, such as ambients.
 
-    Their output is the temperature of a body; that of no other port is.
+    Only these outputs are the temperatures of bodies.
     """
     return [n for n, record in enumerate(module.OUTPUTS) if record.unit == "K"]
 
 
 def names_elsewhere(module: GeneratedModule, kind: str) -> dict[str, str]:
-    """Return names that are of another kind ("parameters", "initial", "inputs"), and of which."""
+    """Return the names of the other kinds ("parameters", "initial", "inputs"), with their kind."""
     kinds = {"parameters": module.PARAMETERS, "initial": module.STATES, "inputs": module.INPUTS}
     return {r.name: other for other, records in kinds.items() if other != kind for r in records}
 

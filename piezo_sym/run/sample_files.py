@@ -228,7 +228,7 @@ def _cell(
         raise FileError(f"has {len(row)} cells", where, f"{len(header)}", remedy)
     column = f" (column {quote(header[n][0])})"
     try:
-        value = float(text.replace("_", "x"))  # 1_0 is a number in Python alone
+        value = float(text.replace("_", "x"))  # 1_0 is a number only in Python
     except ValueError as cause:
         what = f"{quote(text)} is not a number{column}"
         remedy = "units go into the header: t [ms]" if line == 2 and text[:1].isalpha() else ""

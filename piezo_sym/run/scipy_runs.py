@@ -32,7 +32,7 @@ ATOL_FACTOR = 1e-3
 NODES = 4  # of the quadrature, exact to degree 7: above the order of every interpolant
 #: The most times, and numbers of states, in a group.
 MOST_STOPS, MOST_NUMBERS = 512, 100_000
-#: Of the coarse run; ATOL is a part of the scale known so far.
+#: Of the coarse run; ATOL is a fraction of the scale known so far.
 RTOL, ATOL = 1e-3, 1e-2
 GROWTH = 10.0  # of a state over its scale, at which the coarse run restarts with a new scale
 MOST_STEPS = 50_000
@@ -145,7 +145,7 @@ def exit_error(system: DrivenModule, path: Path, stops: FloatArray) -> RunError:
 
 
 def increments(system: DrivenModule, path: Path, since: float, stops: FloatArray) -> FloatArray:
-    """Return the integrals (integrals, k) of the ledger from one time to the next, from `since`."""
+    """Return the ledger's integrals (integrals, k) from `since` to the first stop, and so on."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     starts = np.append(since, stops[:-1])
     t = starts[:, None] + (stops - starts)[:, None] * (nodes + 1) / 2

@@ -36,7 +36,7 @@ class DrivenModule:
         return rows(records, self.parameters)
 
     def scale(self, x: FloatArray) -> FloatArray:
-        """Return magnitudes of x (*batch, n), at least `FLOOR`; of lanes, that of the largest."""
+        """Return magnitudes of x (*batch, n), at least `FLOOR`; for a bank, the largest lane's."""
         scale = np.maximum(np.abs(x), FLOOR)
         for row in self._lanes:
             scale[..., row] = np.max(scale[..., row], axis=-1, keepdims=True)

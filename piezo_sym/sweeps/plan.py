@@ -53,8 +53,8 @@ class Plan:
     axes: tuple[Axis, ...]  # in the user's order
     signals: tuple[Signal, ...]  # of each input, where it is not swept
     duration: float
-    #: Those that the user gave and are not swept, and a number for each swept parameter of a bank,
-    #: since a list in the spec may not fit the swept sizes.
+    #: What the user gave and is not swept, and one number for each swept parameter of a bank, as a
+    #: list in the spec may not fit the swept sizes.
     parameters: Mapping[str, LaneValue]
     initial: Mapping[str, LaneValue]
     samples: FloatArray  # their times (nt,) [s]

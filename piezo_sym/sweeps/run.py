@@ -146,7 +146,7 @@ def fill_in(
 def group_result(
     plan: Plan, group: Group, engine: Engine | None, points: NDArray[np.intp], watch: Watch
 ) -> tuple[Quantities, Quantities]:
-    """Return a group's quantities, and a function's coordinates; fill in the group's errors."""
+    """Return a group's quantities, and coordinates from a reducing function; fill in its errors."""
     u = group.systems[0].inputs.at_samples(plan.samples)
     if engine:
         quantities = run_in_c(plan, group, engine, u, watch)

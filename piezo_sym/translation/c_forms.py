@@ -21,7 +21,7 @@ def is_part(node: ast.FunctionDef) -> bool:
 
 
 def add_part(node: ast.FunctionDef, file: File) -> None:
-    """Take a part, which a function behind it calls."""
+    """Take a part, which a later function calls."""
     if node.name in file.parts:
         raise NotShownError(f"{node.name} is defined twice")
     file.parts[node.name] = node
@@ -43,7 +43,7 @@ def add_helper(node: ast.FunctionDef, file: File, allowed: str) -> None:
 
 
 def helper_is(file: File, name: str, function: Callable[..., Value], count: int) -> bool:
-    """Return whether a function of the file's own is a given one, of so many numbers."""
+    """Return whether a function of the file's own is a given one, of `count` numbers."""
     if name not in file.helpers:
         return False
     args = [file.known.field.name(f"{n} of {name}") for n in range(count)]

@@ -260,7 +260,7 @@ class CFunction:
         self.switches[branch] = self._kept(node)
 
     def _is_least(self, role: str, place: ast.expr, at: Value, node: ast.expr) -> bool:
-        """Read the least value over the lanes: ``out[n] = HUGE_VAL``, then ``min(out[n], ...)``."""
+        """Return whether it is a least value: ``out[n] = HUGE_VAL``, then ``min(out[n], ...)``."""
         n = int(at.constant) if at.constant is not None else -1
         key, scope = ("margins", n, LEAST), self.scope
         most, least = (

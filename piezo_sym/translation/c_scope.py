@@ -28,9 +28,9 @@ from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Proved
 from piezo_sym.translation.signs import compare, on_path
 
-#: What a step's own words for comparisons stand for.
+#: The comparisons that macros of a step stand for.
 _COMPARISONS = {"is_above": ">", "is_at_least": ">="}
-#: The words of a step that are no functions of the library.
+#: The macros of a step that are no functions of the C library.
 _WORDS = {"wide", *_COMPARISONS}
 
 
@@ -68,7 +68,7 @@ class Deferred:
     def read(self) -> Read:
         """Return its value and shape."""
         field = self.scope.file.known.field
-        # a statement is executed whatever is chosen
+        # a statement is executed whichever branch is chosen
         with on_path(field, field.path if self.kind else field.one):
             if field.path not in self.known:
                 read, test = self.scope.read, self.kind == "int"
@@ -148,11 +148,11 @@ class Scope:
         self.names[name] = meaning
 
     def block(self) -> Scope:
-        """Return what stands in a block: names of its own are forgotten behind it."""
+        """Return the scope of a block; names declared in it are unknown after it."""
         return replace(self, names=self.names.new_child())
 
     def of_lanes(self, name: str, bank: str) -> Scope:
-        """Return what stands in a loop over the lanes of a bank."""
+        """Return the scope of a loop over the lanes of a bank."""
         inner = replace(self.block(), lanes=(*self.lanes, (name, bank)))
         inner.declare(name, (self.file.known.field.name("index", bank, len(self.lanes)), WHOLE))
         return inner

@@ -13,7 +13,7 @@ from piezo_sym.spec.tables import banks
 from piezo_sym.translation.known import Proved
 
 _LIBRARY = {record.in_c: name for name, record in RECORDS.items() if record.smooth}
-#: What the words of a step stand for, for numbers of one run; called functions have a line.
+#: The macros of a step for numbers of one run; each function that is called adds a line.
 MACROS = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1

@@ -1,6 +1,6 @@
 """Values with names replaced, moved to another lane, and differentiated.
 
-Input: values.  Output: values of the same field.  A derivative by a state of one lane of a bank has
+Input: values.  Output: values of the same field.  A derivative in a state of one lane of a bank has
 two parts: `derivative` is that of the lane's own terms, `across` that of sums over the bank, which
 every lane has.  The derivative of a sign is 0: derivatives hold inside the branches of a law.
 """
@@ -91,7 +91,7 @@ Inner = Callable[[Generator], Value]
 
 
 def derivative(value: Value, state: int) -> Value:
-    """Return the derivative by a name, without that of sums over the name's own bank."""
+    """Return the derivative in a name, without that of sums over the name's own bank."""
     field = value.field
     bank = next(iter(field.gens[state].lanes), ("", 0))[0]
 
@@ -104,7 +104,7 @@ def derivative(value: Value, state: int) -> Value:
 
 
 def across(value: Value, state: int, lane: int) -> Value:
-    """Return the derivative by a name of a lane of the sums over its bank only."""
+    """Return only the derivative of the sums over a bank, in a name of one of its lanes."""
     field = value.field
     bank = next(iter(field.gens[state].lanes))[0]
 
@@ -138,7 +138,7 @@ def _chain(value: Value, state: int, own: Value, of_sum: Inner) -> Value:
 
 
 def _slope(field: GeneratorField, g: int, state: int, own: Value, of_sum: Inner) -> Value:
-    """Return the derivative of a generator."""
+    """Return the derivative of a generator with respect to a state."""
     gen, same = field.gens[g], field.raised(g, 1)
     if gen.arg is None:
         return own if g == state else field.zero

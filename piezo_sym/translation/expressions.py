@@ -24,7 +24,7 @@ from piezo_sym.translation.signs import choose, compare, on_path, side_of
 MOST_MAGNITUDE = 300
 MOST_WHOLE = 2**31 - 1
 _ARGUMENTS = {"choice": 3, "pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
-#: NumPy's functions that give integers of integers, which may wrap round.
+#: NumPy's functions that return integers, which may overflow, for integers.
 _INTEGERS = frozenset({"abs", "sign", "minimum", "maximum", "clip", "sum"})
 _OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 

@@ -1,8 +1,8 @@
 """The proved system in normal form, as readers of printed text need it.
 
-Input: what `reference` finds in an `IPHS`; this is the type.  Output: the rows of every function,
-the names that texts may use, and the places of parts and rows in arrays; of a printed function, the
-rows that it writes (`Rows`): each once, but to an entry made of zeros more may be added.
+`reference` makes a `Proved` from an `IPHS`: the rows of every function, the names that texts may
+use, and the places of parts and rows in arrays.  `Rows` are the rows that a printed function
+writes: each once, except that values may be added to the entries of a Jacobian of zeros.
 """
 
 from collections.abc import Mapping
@@ -57,10 +57,10 @@ class Proved:
     slots: Mapping[str, tuple[Slot, ...]]  # the rows of each function
     values: Mapping[Key, Value]  # by function and row; what is not listed is zero
     needs: tuple[Need, ...]  # what the laws divide by, and take roots and logarithms of
-    #: Of the conditions of the domain, and whether each is strict.
+    #: The margin of each condition of the domain, and whether the condition is strict.
     margins: tuple[tuple[Value, bool], ...]
-    means: Mapping[str, Value]  # of a stage, for each name that is a co-state's mean the co-state
-    #: Of a stage, for each stop its inner state, its bank, and whether lanes differ in drives.
+    means: Mapping[str, Value]  # in a stage: the co-state by the name of its mean
+    #: In a stage: each stop's inner state, its bank, and whether each lane has its own drive.
     paths: tuple[tuple[str, str | None, bool], ...] = ()
 
     @cached_property
@@ -122,7 +122,7 @@ class Proved:
         return self.names[layout.slots[layout.at(place, bank=bank)].label]
 
 
-#: More lanes than an array without banks has places.
+#: A number of lanes that exceeds the size of any array without banks.
 LONG = 10**9
 
 

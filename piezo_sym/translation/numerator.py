@@ -15,8 +15,8 @@ from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.signs import has_sign
 
 MOST_TERMS = 200_000
-#: Beside a product of two terms in `GeneratorField`: one in FLINT is so many times faster, and a
-#: term given to FLINT so many times slower.
+#: FLINT multiplies two terms this many times faster than `GeneratorField`, where a product takes
+#: this many times less than it takes to pass a term to FLINT.
 FASTER, SLOWER = 30, 3
 
 

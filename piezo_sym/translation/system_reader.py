@@ -110,10 +110,10 @@ class SystemReader:
             return self(self.iphs.symbols.law(law, letters))
 
     def _divide(self, tree: Expr | Cmp, letters: Mapping[str, sp.Symbol]) -> None:
-        """Note what a tree, and a temperature in it, divides by as it is written.
+        """Note the divisors of a tree, and of a temperature in it, as they are written.
 
-        Rows welldef show that it is not zero, and SymPy turns phi/(L/(1 + phi**2)) into a product.
-        They show that on each branch for what stands on it: trees with branches are left out.
+        Rows welldef show that they are not zero; SymPy turns phi/(L/(1 + phi**2)) into a product.
+        Trees with branches are left out: there the rows show it on each branch only.
         """
         bodies = {Sym(port.temperature): port.law for _, port in self.iphs.circuit.of(Body)}
         found = [tree, *(law for word, law in bodies.items() if word in walk(tree))]

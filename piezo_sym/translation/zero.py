@@ -82,9 +82,9 @@ def _is_zero(value: Value, *, edges: Edges) -> bool:
 
 
 def _apart(value: Value) -> list[Value]:
-    """Return a value's sums over lanes, those with equal factors in the lane joined, and the rest.
+    """Return the terms of a value without sums over lanes, then the terms inside each such sum.
 
-    The value is the sum of the rest and, for each of the others, of its sum over lanes.
+    Sums over one bank whose factors in its lane are equal are joined, and these factors left out.
     """
     field, rest = value.field, []
     sums: dict[tuple[str, Value], list[Value]] = {}
@@ -122,7 +122,7 @@ def _groups(value: Value) -> list[tuple[Value, ...]]:
 
 
 def _by_cases(value: Value, groups: Sequence[tuple[Value, ...]], *, edges: Edges) -> bool:
-    """Return whether a value is zero, with the signs of each group replaced by itself."""
+    """Return whether a value is zero, deciding the signs of one group at a time."""
     left = value
     for group in groups:
         here = _chosen_by(value, group)

@@ -55,7 +55,7 @@ def examine(
     with apart(_printed(iphs, apart)) as printed:
         try:
             prover = Prover(iphs)
-        finally:  # without it, too, the texts may be wanted
+        finally:  # the texts are wanted even without a prover
             yield (made := next(printed))
         rows = (*prover.rows, PROGRAM)
         yield Report(iphs.model.name, rows)
@@ -98,7 +98,7 @@ class _Work:
         self._text, self._done, self._proved = text, dict[int, Row](), dict[int, Row]()
 
     def begun(self, number: int | None, part: float) -> Progress:
-        """Return what has been decided since this was asked before, and what is done next."""
+        """Return what was decided since the last call, and what is done next."""
         done, proved, self._done, self._proved = self._done, self._proved, {}, {}
         return Progress(done, number, part, proved)
 
@@ -139,7 +139,7 @@ class _Work:
     def _attackable(self, claims: Iterable[int]) -> dict[int, tuple[str, str]]:
         """Return the id and the element of the rows to attack; the other claims become OPEN.
 
-        Numbers do not tell apart the rows on the divisors of the junction laws.
+        Rows on the divisors of the junction laws share both: numbers do not tell them apart.
         """
         rows, keys = self.prover.rows, dict[int, tuple[str, str]]()
         for number in claims:

@@ -139,7 +139,7 @@ def messages(worker: Worker, request: Request) -> Iterator[Any]:
     except TimeoutError:
         yield OVERDUE
     except (EOFError, BrokenPipeError):
-        ends = {-signal.SIGALRM: LATE, -signal.SIGKILL: KILLED}  # who stops it wants no other
+        ends = {-signal.SIGALRM: LATE, -signal.SIGKILL: KILLED}  # whoever kills it wants no retry
         yield ends.get(worker.status or 0, ENDED)
 
 
@@ -150,7 +150,7 @@ def packed(subject: object) -> bytes:
 
 @cache
 def _examiner() -> Worker:
-    """Return the process of this interpreter; there is one."""
+    """Return the one process that examines systems for this interpreter."""
     return Worker("-m", "piezo_sym.verification.worker", group=True)  # solvers stop with it
 
 

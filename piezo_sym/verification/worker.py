@@ -64,9 +64,9 @@ def main() -> None:
 
 
 def end_after(seconds: float) -> None:
-    """End this process if it still does the same after some seconds; 0 for never.
+    """End this process after some seconds, unless this is called again before; 0 for never.
 
-    The system ends it, which needs no turn of the interpreter: a power of large numbers has none.
+    The system ends it: Python could not interrupt one long operation, as a power of large numbers.
     """
     signal.setitimer(signal.ITIMER_REAL, max(seconds, LEAST) if seconds else 0.0)
 

@@ -33,12 +33,12 @@ INDUCTANCES = (0.1, 0.5, 1.0, 5.0)  # mH
 FREQUENCIES = (10.0, 1000.0)  # Hz
 HOTTEST = 1e4  # K: curves end there
 VALID = 400.0  # K: above, the laws are not valid
-LEAST, MOST = 1.0, 1e4  # of the axis [K]
+LEAST, MOST = 1.0, 1e4  # ends of the axis [K]
 MARKS = ("o", "s", "^", "D")  # not dashes, which tell stable from unstable
 #: The inset of the folds: its place in the axes, its ranges of frequency [Hz] and rise [K].
 INSET = (0.57, 0.08, 0.41, 0.29)
 FOLDS, RISES = (55.0, 75.0), (50.0, 500.0)
-APART = 0.3  # distance of marks on a line, as a part of the diagonal
+APART = 0.3  # distance of marks on a line, as a fraction of the diagonal
 
 
 def curve(module: GeneratedModule, millihenry: float) -> xarray.Dataset:

@@ -132,7 +132,7 @@ class FunctionFrame:
         return writes, [*ends(at)]
 
     def place(self, at: Places, n: int, lane: str = "") -> str:
-        """Return the place of slot n; of a bank, that of a lane, the loop's if none is given."""
+        """Return the place of slot n; for a bank, in `lane` or else the loop's."""
         first, lane = at.position(n), lane or self.words["j"]
         if not at.slots[n].bank:
             return first

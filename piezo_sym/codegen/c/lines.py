@@ -24,7 +24,7 @@ from piezo_sym.expressions.text import Style, piece, write_comparison
 from piezo_sym.expressions.tree import Add, Expr, If, LaneSum
 
 WIDTH = 96
-#: Calls that compilers do not vectorise; a loop with one gets no directive.
+#: Calls that compilers do not vectorise; a loop with such a call gets no directive.
 _ALONE = "|".join(record.in_c for record in RECORDS.values() if record.transcendental)
 LIBRARY = re.compile(rf"\b(?:{_ALONE}|pow)(?:_of)?\(")
 
@@ -37,7 +37,7 @@ class Words:
     names: Mapping[str, str]  # the C name of each name of the program
     arrays: Mapping[str, str]  # the bank of each parameter and state that is an array over lanes
     lane: str  # the index of a loop over lanes
-    number: str = "double"  # the type of numbers: ``double``, or ``real`` in a text for every width
+    number: str = "double"  # the type of numbers; ``real`` in a text for all vector widths
 
     def style(self, lane: str | None = None) -> Style:
         """Return the spelling of expressions in a lane, the loop's if none is given."""

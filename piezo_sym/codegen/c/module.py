@@ -120,10 +120,8 @@ class _Printer:
         yield f"    {self.out}[{place}] = {self.j} < {size} ? {name}[{self.j}] : (double)NAN;"
         yield "}"
 
-    # Entries of the Jacobian
-
     def _place(self, entry: Entry, column_lane: str) -> str:
-        """Return the target of an entry, in the loop's lane of its row and a lane of its column."""
+        """Return the target of an entry: its row in the loop's lane, its column in another."""
         row = self.frame.place(self.states, entry.row)
         col = self.frame.place(self.states, entry.col, column_lane)
         start = f"({row})*{self.n}" if " " in row else f"{row}*{self.n}"

@@ -25,7 +25,7 @@ class _Needs:
     """What a value needs: quantities, as bits; the first field it reads; a loop over lanes."""
 
     quantities: int = 0
-    first: float = 1.0  # as a part of its array, since all arrays follow the order of elements
+    first: float = 1.0  # as a fraction of its array, since all arrays follow the order of elements
     loop: bool = False
 
 

@@ -1,9 +1,9 @@
-"""A collocation step in C, for every width of ``real``: one number, or one of each of many runs.
+"""A collocation step in C, for every width of ``real``: one number, or a vector of one per run.
 
 Input: a `Program` and its `Collocation`.  Output: the text of ``<model>_step.c``: the integrands of
 means, a stage, the slopes, the tables for the elimination, and the record of the parameters with
 the functions that copy those of a run into a lane of vectors; `run/engine` drives them.  Branches
-are given, so the text compares nothing, and holds for vectors, too.
+are given as numbers: without comparisons, the text holds for vectors too.
 """
 
 from collections.abc import Iterator, Sequence
@@ -188,7 +188,7 @@ class _Printer:
         yield "\n".join([f"{ENGINE}\n{text}", *bodies, END_OF_ENGINE]).removesuffix("\n")
 
     def slopes(self) -> str:
-        """Return the derivative of the rates by the state, in the places of `coupling`."""
+        """Return the Jacobian of the rates, in the places of `coupling`."""
         writes = []
         for place in self.coupling.places:
             target = self._at(place.shared, place.lanes, place.bank)

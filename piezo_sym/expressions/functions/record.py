@@ -20,7 +20,7 @@ class LawFunction:
     """One function of laws."""
 
     name: str  # in laws and SymPy, of the method of FLINT's balls, and in C unless `c` is given
-    #: Its derivatives by its arguments; at a kink, those of one of its sides.
+    #: Its derivatives with respect to its arguments; at a kink, those of one of its sides.
     slopes: tuple[str, ...]
     #: ``pure``: neither argument nor value has a unit; ``equal``: arguments and value have the same
     #: (of a table, all x, and all y and the value); ``none``: any argument, a value without unit;
@@ -33,31 +33,31 @@ class LawFunction:
     knots: bool = False
     jumps: bool = False  # whether it is discontinuous
     width: bool = False  # whether its second argument is a width, taken to be >= 0
-    #: F(c*x, c*w) = c**degree * f(x, w) for all c > 0, if there is such a number.
+    #: Homogeneity: f(c*x, c*w) = c**degree * f(x, w) for all c > 0, if there is such a number.
     degree: int | None = None
     power: Fraction | None = None  # the exponent, if it is a power of its argument
-    #: F(-x, w) = -f(x, w) is ``odd``, f(-x, w) = f(x, w) ``even``.
+    #: Symmetry: f(-x, w) = -f(x, w) is ``odd``, f(-x, w) = f(x, w) ``even``.
     parity: Literal["", "odd", "even"] = ""
     rises: int = 0  # 1 if a smooth function increases strictly (an even one: for x >= 0), else 0
     #: Where it has a value; "" is everywhere.  A smooth function of two needs w > 0, too.
     domain: Literal["", "x > 0", "x >= 0"] = ""
-    #: Y > 0, or y >= 0 and zero at zero alone, wherever it has a value.
+    #: The sign of its values: > 0, or >= 0 and zero only at zero.
     sign: Literal["", ">", ">="] = ""
     #: A rational argument with a rational value, and that value.
     known: tuple[int, int] | None = None
     bounds: tuple[float | Fraction, float | Fraction] = (-INF, INF)  # rational bounds of its values
     largest: float = INF  # the argument beyond which the value exceeds every double
-    integral: str = ""  # an antiderivative by x, where it is of use
-    #: Known to solvers besides monotony; a comment at each says why it holds.
+    integral: str = ""  # an antiderivative with respect to x, if one is needed
+    #: Known to solvers besides monotonicity; a comment at each says why it holds.
     facts: tuple[str, ...] = ()
-    #: Its name there, or a template with places x and w, whose outermost operator is `binds`.
+    #: Its name in NumPy, or a template with places x and w, whose outermost operator is `binds`.
     numpy: str = ""
     binds: Literal["atom", "sum"] = "atom"
     #: The import and the definition that `numpy` needs.
     numpy_helper: tuple[()] | tuple[str, str] = ()
-    c: str = ""  # its name there, if that differs
+    c: str = ""  # its name in C, if that differs
     c_helper: tuple[str, str] | None = None  # parameters and value in C, if <math.h> lacks it
-    written: bool = True  # whether a spec may write it; the others are made by lowering
+    written: bool = True  # whether a spec may write it; the others only result from lowering
     #: about, example: one line on it, and a law with it, for users.
     about: str = ""
     example: str = ""
@@ -68,7 +68,7 @@ class LawFunction:
         return not (self.choices or self.knots)
 
     def branches(self, arguments: int) -> int:
-        """Return how many branches it has, of so many arguments."""
+        """Return the number of its branches for this many arguments."""
         return arguments // 2 - 1 if self.knots else 1 + self.choices.count(" if ")
 
     @property

@@ -43,7 +43,7 @@ Guards: TypeAlias = tuple[Cmp, ...]
 
 
 def cases(law: Expr, letter: str, positive: Positive) -> tuple[tuple[Guards, Expr], ...] | None:
-    """Return (guards in order of evaluation, the law where they hold); None if too many.
+    """Return a law's cases: (guards in order of evaluation, law there); None if too many.
 
     A condition inside a choice by the letter is decided only if it has a value everywhere.
     """

@@ -210,7 +210,7 @@ def _positive_size(size: Size, element: Any, state: str) -> tuple[Cmp, ...]:
 
 
 def _moved(size: Size, element: Any, state: str) -> Expr:
-    """Return how far a state is from rest."""
+    """Return a state minus its value at rest."""
     return add(Sym(state), neg(_rest(size, element)))
 
 
