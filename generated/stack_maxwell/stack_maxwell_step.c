@@ -1103,9 +1103,7 @@ static void MODEL(settle)(const MODEL(coordinate) *w, MODEL(stops) *s)
     }
 }
 
-/*
- * Stop elements: F = k z; z follows C, but stays at -r or r while C goes further.
- */
+/* Stop elements: F = k z; z follows C, but stays at -r or r while C goes further. */
 static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
 {
     memset(s->mean, 0, sizeof s->mean);
@@ -1131,9 +1129,7 @@ static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
     MODEL(settle)(w, s);
 }
 
-/*
- * The values of path functionals at the stages of a step, and at a point. Comes after stop.c.
- */
+/* The values of path functionals at the stages of a step, and at a point. Comes after stop.c. */
 
 /* At a single point, an inner state this close to its limit, relative to it, counts as at it. */
 #define AT_LIMIT 1e-9
@@ -1852,9 +1848,7 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
     return found;
 }
 
-/*
- * A step of order two by itself, for programs in C; see <model>_step.h.
- */
+/* A step of order two by itself, for programs in C; see <model>_step.h. */
 
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {

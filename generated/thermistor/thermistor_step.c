@@ -1138,9 +1138,7 @@ static mask MODEL(solve)(MODEL(block) *m, real h, mask where)
     return found;
 }
 
-/*
- * A step of order two by itself, for programs in C; see <model>_step.h.
- */
+/* A step of order two by itself, for programs in C; see <model>_step.h. */
 
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {

@@ -152,9 +152,6 @@ def _input(placed: Placed) -> str:
     raise TypeError(f"{placed.element} is no port of an input")
 
 
-# Laws
-
-
 def _excesses(iphs: IPHS, new: Names) -> dict[tuple[Sym, Sym], Quantity]:
     """Return T - T_0 for each temperature of the form T = T_0*exp(z)."""
     excesses = {}
@@ -181,9 +178,6 @@ def _limits(iphs: IPHS, excesses: Excesses) -> Iterator[Limit]:
         test = greater(condition.tree)
         margin = with_excess(add(test.left, neg(test.right)), excesses)
         yield Limit(condition_text(condition.tree), "=" not in test.op, margin)
-
-
-# Definitions
 
 
 def _costates(iphs: IPHS, excesses: Excesses) -> Iterator[Quantity]:

@@ -93,8 +93,6 @@ class CFunction:
             raise NotShownError(f"a function {node.name} of such types")
         return roles
 
-    # Statements
-
     def _block(self, inner: Scope, body: Iterable[ast.stmt]) -> None:
         outside, self.scope = self.scope, inner
         for node in body:
@@ -195,8 +193,6 @@ class CFunction:
         for added in filter(None, self.summed.values()):
             added.is_open = False
         self.summed = outside
-
-    # Changes
 
     def _kept(self, node: ast.expr) -> Deferred:
         """Return what a variable or constant is set to; it is read even if nothing needs it."""

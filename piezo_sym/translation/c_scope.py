@@ -175,8 +175,6 @@ class Scope:
                     found.is_read = True
         return Deferred(node, self)
 
-    # Meanings
-
     def meaning(self, kind: str, node: ast.expr) -> Meaning:
         """Return what a constant of some kind is: a number, an index, a pointer."""
         known = self.file.known
@@ -247,8 +245,6 @@ class Scope:
             case [ast.Return(ast.expr() as value)]:
                 return Scope(self.file, {}, names).read(value)[0]
         raise refused(node, "a call of what is more than an expression")
-
-    # Branches
 
     def branch(self, place: Value) -> Branch:
         """Return what branch stands at a place, of each lane in a loop."""

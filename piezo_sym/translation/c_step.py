@@ -149,8 +149,6 @@ class _Step:
         if found != wanted or self.tables.get("read", [])[: len(read)] != read:
             raise NotShownError("the step does not say which states it reads, heats, or jumps with")
 
-    # Functions
-
     def _function(self, name: str, *, by_branches: bool = False) -> CFunction:
         return CFunction(self.functions[name], self.file, by_branches=by_branches)
 

@@ -160,8 +160,6 @@ class _Function:
             raise refused(value, "an array")
         self.written.zeros = zeros
 
-    # Rows
-
     def _write(self, place: ast.expr, value: ast.expr, *, added: bool) -> None:
         name, rows = self.name, self.written
         key, banks = self._key(place)
@@ -208,8 +206,6 @@ class _Function:
                 return value if right and ast.unparse(axis) == "axis=0" else None
         return None
 
-    # Places
-
     def _slot(
         self, node: ast.expr, layout: Layout, *, equal: bool = False
     ) -> tuple[int, str | None]:
@@ -228,8 +224,6 @@ class _Function:
         if last != layout.places[n + 1]:
             raise refused(node, "lanes of another bank")
         return n, layout.slots[n].bank
-
-    # Names
 
     def _leaf(self, node: ast.expr) -> Read:
         match node:

@@ -79,8 +79,6 @@ class SystemReader:
         self.known[symbol] = self.costates[costate] = self._name(name, symbol, bank)
         return self.costates[costate]
 
-    # The domain
-
     def assume(self, given: Iterable[Cmp]) -> tuple[tuple[Value, bool], ...]:
         """Take some conditions as true; return their margins, and which are strict."""
         found = [(self._margin(condition, {}), "=" not in condition.op) for condition in given]
@@ -146,8 +144,6 @@ class SystemReader:
         for symbol in self._read:
             del self.known[symbol]
         self._read.clear()
-
-    # Expressions
 
     def __call__(self, expr: sp.Expr) -> Value:
         """Return an expression in normal form."""

@@ -53,8 +53,6 @@ class _Printer:
         self.states = self.frame.layout("x", [field.slot for field in program.states])
         self.out, self.n, self.j = (words[word] for word in ("out", "n", "j"))
 
-    # Functions
-
     def sizes(self) -> Iterator[str]:
         """Yield the functions that return the numbers of states and of processes."""
         counted = {"states": self.program.states, "processes": self.program.processes}

@@ -109,8 +109,6 @@ class _Printer:
         self.frame = FunctionFrame(program, arrays, self.words, lines, extended.taken)
         self.coupling = coupling_of(program, slopes)
 
-    # Functions
-
     def integrands(self) -> str:
         """Return the function of the integrands, whose means are given to a stage."""
         rows = [OutputRow(Slot(mean.name, mean.bank), mean.value) for mean in self.step.means]

@@ -54,8 +54,6 @@ class _Printer:
         self.words = words
         self.states = places([field.slot for field in program.states], "end", program.taken)
 
-    # Functions
-
     def function(self, function: ModuleFunction) -> str:
         """Return one function of the module."""
         if function.name == "rhs":
@@ -118,8 +116,6 @@ class _Printer:
             else:
                 lines += _assignment(f"{self.out}[{n}]", text, limit.margin)
         return _body([*lines, f"return {self.out}"])
-
-    # Parts of a function
 
     def _opening(
         self,

@@ -1,6 +1,4 @@
-/*
- * The values of path functionals at the stages of a step, and at a point. Comes after stop.c.
- */
+/* The values of path functionals at the stages of a step, and at a point. Comes after stop.c. */
 
 /* At a single point, an inner state this close to its limit, relative to it, counts as at it. */
 #define AT_LIMIT 1e-9

@@ -1,6 +1,4 @@
-/*
- * A step of order two by itself, for programs in C; see <model>_step.h.
- */
+/* A step of order two by itself, for programs in C; see <model>_step.h. */
 
 static long MODEL(made)(MODEL(block) *m, const MODEL(parameters) *p, long *sizes, real *space)
 {

@@ -178,9 +178,7 @@ static void MODEL(settle)(const MODEL(coordinate) *w, MODEL(stops) *s)
     }
 }
 
-/*
- * Stop elements: F = k z; z follows C, but stays at -r or r while C goes further.
- */
+/* Stop elements: F = k z; z follows C, but stays at -r or r while C goes further. */
 static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
 {
     memset(s->mean, 0, sizeof s->mean);
