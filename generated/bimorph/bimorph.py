@@ -1,7 +1,7 @@
 """Piezoelectric bender: two layers in opposition on one beam: irreversible port-Hamiltonian system.
 
 Source:  Smits, Dalke, Cooney (1991), Sensors and Actuators A 28, 41-61; PiezoDrive BA6020
-Model:   bimorph, spec sha256 c6f6c73fb3551358bbe7359568b93ef3d39535c449c2fe148cd2d7ad0f0a147a
+Model:   bimorph, spec sha256 e1bdc157e28404f3e3f2a5e6ecbc555574e7dfbd87761b8afc1f5ffdda416572
 System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
          rows, multiplied out; `piezo-sym show` prints the matrices
 Proofs:  skew, casimir, temperature, welldef, energy, entropy, passive, odd, sigma, exergy, environment, units, program PROVED
@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 NAME = "bimorph"
-SPEC_SHA256 = "c6f6c73fb3551358bbe7359568b93ef3d39535c449c2fe148cd2d7ad0f0a147a"
+SPEC_SHA256 = "e1bdc157e28404f3e3f2a5e6ecbc555574e7dfbd87761b8afc1f5ffdda416572"
 
 
 class Record(NamedTuple):

@@ -2,7 +2,7 @@
  * Heat exchanger: two bodies in contact: irreversible port-Hamiltonian system.
  *
  * Source:  Ramirez, Maschke, Sbarbaro (2013), Chem. Eng. Sci. 89, 223-234, the heat exchanger
- * Model:   heat_exchanger, spec sha256 71fec2526da33591c370ca975ce1a41a1483f3eefd197e6cbac9982a44bd4efd
+ * Model:   heat_exchanger, spec sha256 81da265b96a9585ebb1056051f48674761b82597e707def9ebb654e693d5bec0
  * System:  dx/dt = J_ir dU/dx + g u, J_ir = J0 + sum_k R_k J_k over processes k; here are its
  *          rows, multiplied out; `piezo-sym show` prints the matrices
  * Proofs:  skew, casimir, temperature, energy, entropy, welldef, passive, sigma, units, program PROVED

@@ -9,7 +9,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-ORDERED = ("parameters", "inputs", "initial", "elements")
+ORDERED = ("parameters", "inputs", "elements")
 MAX_SIZE = 1e300
 #: Values that an entry has where it is left out; a law "0" says something, but as a rest.
 NOTHING: tuple[Any, ...] = (None, False, "", [])
@@ -55,8 +55,8 @@ def _dumped(pair: Mapping[str, Any]) -> str:
 def spec_hash(data: Mapping[str, Any]) -> str:
     """Return the SHA-256 of spec data.
 
-    Order counts where it means something: among parameters, inputs, elements and their states, and
-    initial values. Entries without effect (0, "", false, an empty list, a rest "0") are left out.
+    Order counts where it means something: among parameters, inputs, elements and their states.
+    Entries without effect (0, "", false, an empty list, a rest "0") are left out of the hash.
     """
     rows = {name: _rows(table, name in ORDERED) for name, table in data.items()}
     tables = {name: table for name, table in rows.items() if table}

@@ -61,7 +61,7 @@ def test_runs_agree_with_rates_by_hand_and_close_both_balances(name, way, bound,
 @pytest.mark.some(4)
 @pytest.mark.parametrize("name", DEVICES)
 def test_all_of_it_is_proved(name):
-    report = process.examined_model(parse(DEVICES[name][0]))
+    report = process.examined(parse(DEVICES[name][0]))
     report.raise_if_not_proved()
     assert {row.id for row in report.rows} >= {"energy", "entropy", "program", "units"}
 

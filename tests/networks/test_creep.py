@@ -97,5 +97,5 @@ def test_cells_of_maxwell_creep_as_their_eigenvalues_say():
 
 @pytest.mark.parametrize("cells", [KELVIN_VOIGT, MAXWELL], ids=["ladder", "cells"])
 def test_creep_is_proved_for_any_number_of_cells(cells):
-    report = process.examined_model(model(cells))
+    report = process.examined(model(cells))
     assert {row.verdict for row in report.rows if row.required} == {Verdict.PROVED}

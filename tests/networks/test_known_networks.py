@@ -267,7 +267,7 @@ def test_entropy_balance(case):
 @pytest.mark.some(1)
 def test_proofs(case):
     model, _, _ = case
-    process.examined_model(model).raise_if_not_proved()
+    process.examined(model).raise_if_not_proved()
     verify(derive(model).expand()).raise_if_not_proved()
 
 

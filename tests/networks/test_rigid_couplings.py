@@ -273,7 +273,7 @@ def test_each_element_keeps_its_costate_and_its_energy(case):
 @pytest.mark.some(2)
 def test_proved(case):
     _, _, iphs = case
-    report = process.examined_model(iphs.model)
+    report = process.examined(iphs.model)
     report.raise_if_not_proved()
     assert {row.id for row in report.rows} >= {"energy", "entropy", "sigma", "units", "program"}
 

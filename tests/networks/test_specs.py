@@ -60,7 +60,7 @@ def numbers(expression, at):
 
 @pytest.mark.some(2)
 def test_it_is_proved_for_every_size_and_written_out(model, exact):
-    process.examined_model(model).raise_if_not_proved()
+    process.examined(model).raise_if_not_proved()
     report = examined(examine(exact, points=FEW))
     report.raise_if_not_proved()
 
