@@ -32,6 +32,9 @@ from piezo_sym.run.parameters import (
 )
 
 WHERE = "operating_point"
+#: The step along directions to other states of rest; the least relative change of a temperature,
+#: per unit, that is more than round-off. Entropies have sizes that change one by 1e-6.
+STEP, SAME = 1e-2, 1e-9
 
 
 @final
@@ -109,9 +112,10 @@ def operating_point(
     held = _held(module, p, start, temperatures)
     free = np.setdiff1d(np.arange(start.size), list(held.values()))
     search, x, size = RestSearch.of(module, p, u, start, free).find(start)
-    undetermined = search.undetermined(x, size)
-    _refuse_open_bodies(module, p, x, undetermined)
-    return _described(search, x, parameters or {}, list(held), undetermined)
+    directions = search.undetermined(x, size)
+    _refuse_open_bodies(module, p, x, directions)
+    undetermined = np.flatnonzero(directions.any(axis=1))
+    return _described(search, x, parameters or {}, list(held), undetermined.tolist())
 
 
 def read_constants(
@@ -136,16 +140,19 @@ def _held(
 
 
 def _refuse_open_bodies(
-    module: GeneratedModule, p: Any, x: FloatArray, undetermined: list[int]
+    module: GeneratedModule, p: Any, x: FloatArray, directions: FloatArray
 ) -> None:
-    """Raise `RunError` if the temperature of a body differs between states of rest."""
-    if not undetermined:
+    """Raise `RunError` if the temperature of a body differs between states of rest.
+
+    Along `directions` (n, k), in which stores may change without it.
+    """
+    if not directions.any():
         return
-    step = np.zeros((x.size, len(undetermined)))
-    step[undetermined, range(len(undetermined))] = 1e-6 * np.maximum(1.0, np.abs(x[undetermined]))
-    changed = np.asarray(module.temperatures(x[:, None] + step, p))
-    temperatures = np.asarray(module.temperatures(x, p))[:, None]
-    for body, differs in zip(module.BODIES, changed != temperatures, strict=True):
+    ahead, behind = (
+        np.asarray(module.temperatures(x[:, None] + step * directions, p)) for step in (STEP, -STEP)
+    )
+    change = np.abs(ahead - behind) / (STEP * (ahead + behind))
+    for body, differs in zip(module.BODIES, change > SAME, strict=True):
         if np.any(differs):
             what = f"rest leaves the temperature of '{body.name}' open: it depends on the way there"
             held = f"operating_point(..., temperatures={{'{body.name}': ...}})"

@@ -208,12 +208,15 @@ class RestSearch:
         left, values, right = np.linalg.svd(scaled / column)
         return left, values, right, row_size, scale / column
 
-    def undetermined(self, x: FloatArray, size: FloatArray) -> list[int]:
-        """Return the rows that differ between x and other states of rest."""
-        _, values, right, *_ = self._factors(x, size)
+    def undetermined(self, x: FloatArray, size: FloatArray) -> FloatArray:
+        """Return the directions (n, k) from x to other states of rest; no row is due to round-off.
+
+        Each is a unit vector in the sizes of coordinates.
+        """
+        *_, values, right, _, scale = self._factors(x, size)
         open_ = right[values <= SINGULAR * values[0]] if values.size else right
-        coordinates = np.any(np.abs(open_) > UNDETERMINED, axis=0)
-        return [int(row) for row in np.flatnonzero(self.basis[:, coordinates].any(axis=1))]
+        open_ = np.where(np.abs(open_) > UNDETERMINED, open_, 0.0)
+        return np.asarray(self.basis @ (scale[:, None] * open_.T))
 
     def error(self, rates: FloatArray, size: FloatArray) -> RunError:
         """Return the error of a search without result, with the state of the largest rate."""

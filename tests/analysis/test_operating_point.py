@@ -188,3 +188,55 @@ def test_a_body_is_held_at_a_temperature_beyond_twice_its_start() -> None:
     """The search for S = (T - T_0)/b passes entropies at which the law is below 0 K."""
     found = operating_point(parse(LINEAR), temperatures={"block": 900.0})
     assert found.initial["S"] == pytest.approx(200.0, rel=1e-13)
+
+
+CUSHION = """
+[model]
+name = "cushion"
+[parameters]
+k = { value = 4e7, unit = "N/m" }
+m = { value = 0.2, unit = "kg" }
+d = { value = 150.0, unit = "N*s/m" }
+k_z = { value = [2e6, 5e5], unit = "N/m" }
+F_z = { value = [5.0, 30.0], unit = "N" }
+A = { value = 3.0, unit = "cm**2" }
+p_0 = { value = 2.0, unit = "bar" }
+V_0 = { value = 5.0, unit = "cm**3" }
+T_0 = { value = 298.15, unit = "K" }
+ga = { value = 1.4, unit = "1" }
+c = { value = 20.0, unit = "J/K" }
+lam = { value = 0.2, unit = "W/K" }
+[inputs]
+F = { unit = "N" }
+T_e = { unit = "K", default = 298.15 }
+[domain]
+assume = ["d >= 0", "ga > 1", "p_0 > 0", "V_0 > 0", "T_0 > 0", "W < V_0", "F_z >= 0", "lam >= 0", "T_e > 0"]
+[initial]
+S = "c*log(T_e/T_0)"
+[elements]
+tip = { kind = "mass", at = "tip", mass = "m", state = "p" }
+flexure = { kind = "spring", between = ["tip", "wall"], stiffness = "k", state = "q" }
+friction = { kind = "damper", between = ["tip", "wall"], force = "d*v", heats = "body" }
+load = { kind = "force_source", at = "tip", input = "F" }
+stops = { kind = "stop", between = ["tip", "wall"], count = 2, stiffness = "k_z", limit = "F_z", heats = "body", state = "z" }
+piston = { kind = "cylinder", hydraulic = ["oil", "tank"], translation = ["tip", "wall"], area = "A" }
+film = { kind = "conduction", between = ["gas", "body"], conductance = "lam" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+air = { kind = "ambient", body = "body", conductance = "lam", input = "T_e" }
+[elements.gas]
+kind = "storage"
+energy = "p_0*V_0/(ga - 1)*((1 - W/V_0)**(1 - ga)*exp(S_g*(ga - 1)*T_0/(p_0*V_0)) - 1) - p_0*W"
+states = { W = { rate = "flow", between = ["oil", "tank"] }, S_g = { rate = "entropy" } }
+"""  # noqa: E501
+
+
+def test_a_stop_that_slipped_leaves_the_place_open_but_no_temperature() -> None:
+    """Gas that is compressed more holds less entropy at the temperature of its surroundings."""
+    found = operating_point(parse(CUSHION), inputs={"F": 500.0})
+    assert found.temperatures == {
+        "gas": pytest.approx(298.15, rel=1e-12),
+        "body": pytest.approx(298.15, rel=1e-12),
+    }
+    assert abs(found.initial["z"][0]) <= 5.0 / 2e6
+    assert {"q", "z[1]", "S_g"} <= {*found.undetermined}
+    assert "S" not in found.undetermined
