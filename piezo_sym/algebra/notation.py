@@ -29,12 +29,12 @@ class Slot:
 def latex(expr: sp.Expr) -> str:
     """Return one expression as LaTeX."""
     names = {s: symbol_latex(s.name) for s in expr.free_symbols}
-    return str(sp.latex(_with_magnitudes(expr, sp.Abs), symbol_names=names))
+    return str(sp.latex(_with_magnitudes(_with_powers(expr), sp.Abs), symbol_names=names))
 
 
 def text(expr: sp.Expr) -> str:
     """Return one expression as plain text."""
-    plain = _with_magnitudes(expr, sp.Function("abs"))
+    plain = _with_magnitudes(_with_powers(expr), sp.Function("abs"))
     return str(_Text().doprint(plain.replace(lambda e: isinstance(e, sp.Piecewise), _extreme)))
 
 
@@ -52,6 +52,18 @@ class _Text(StrPrinter):  # type: ignore[misc]
 
     def _print_And(self, condition: sp.And) -> str:
         return " and ".join(map(self._print, condition.args))
+
+
+def _with_powers(expr: sp.Expr) -> sp.Expr:
+    """Return an expression with powers for exponentials of a logarithm times something."""
+    return expr.replace(sp.exp, _power)
+
+
+def _power(exponent: sp.Expr) -> sp.Expr:
+    logs = [factor for factor in sp.Mul.make_args(exponent) if isinstance(factor, sp.log)]
+    if len(logs) != 1:
+        return sp.exp(exponent)
+    return sp.Pow(logs[0].args[0], exponent / logs[0])
 
 
 def _with_magnitudes(expr: sp.Expr, magnitude: Any) -> sp.Expr:

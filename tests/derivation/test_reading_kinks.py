@@ -91,3 +91,12 @@ def test_other_choices_are_read_as_choices():
     x = sp.Symbol("x", real=True)
     assert text(sp.Piecewise((1, sp.Ne(x, 0)), (2, True))) == "(1 if x != 0 else 2)"
     assert text(sp.Piecewise((x, (x > 0) & (x < 3)), (0, True))) == "(x if x > 0 and x < 3 else 0)"
+
+
+def test_a_power_is_shown_as_a_power():
+    """Powers with letters in their exponents are exponentials to SymPy, once they are positive."""
+    x, n = sp.Symbol("x", real=True), sp.Symbol("n", real=True)
+    value = sp.exp((1 - n) * sp.log(1 - x)) * sp.exp(x)
+    assert text(value) == "(1 - x)**(1 - n)*exp(x)"
+    assert latex(value) == r"\left(1 - x\right)^{1 - n} e^{x}"
+    assert text(sp.exp(sp.log(x) * sp.log(n))) == "exp(log(n)*log(x))"
