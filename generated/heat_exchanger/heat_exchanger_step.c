@@ -986,10 +986,13 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
  */
 
 /*
- * States are moved by ASIDE of their scales to estimate the round-off of their co-states; what exceeds
- * it by the factor MUCH_NOISE is no round-off.
+ * States are moved by ASIDE of their scales to estimate the round-off of their co-states, and by steps of
+ * NEAREST to FARTHEST; what exceeds it by the factor MUCH_NOISE is no round-off.
  */
 #define ASIDE 1e-3
+#define NEAREST (sizeof(real) < sizeof(double) ? 1e-5 : 1e-9)
+#define FARTHEST (sizeof(real) < sizeof(double) ? 1e-4 : 1e-8)
+#define FARTHER 1.6
 #define MUCH_NOISE 100.0
 /* A relative bound, but not below the round-off of sums over nodes. */
 #define ABOVE_NOISE(part) ((part) > MUCH_NOISE * NOISE ? (part) : MUCH_NOISE * NOISE)
@@ -1051,24 +1054,46 @@ static mask MODEL(coarse)(const MODEL(block) *m, real h)
     return MODEL(rough)(m, &MODEL(few), NULL);
 }
 
+/* The integrands of the means, with each state moved away from zero by a fraction of its scale. */
+static void MODEL(integrands_aside)(const MODEL(block) *m, double fraction, real *value)
+{
+    for (long k = 0; k < m->n; ++k) {
+        const real by = fraction * (m->largest[k] + size_of(m->x[k]));
+        m->reached[k] = m->x[k] + chosen(m->x[k] < 0.0, -by, by);
+    }
+    MODEL(integrands)(m->reached, &m->p, value);
+}
+
 /*
- * The lanes in which FINE nodes are too few: the step is too long. An integrand that tends to zero
- * as a difference of larger terms, such as a length and a rest length, ends as their round-off; how
- * large that is shows when the states are moved.
+ * The round-off of integrands. One that tends to zero as a difference of larger terms, such as a length
+ * and a rest length, ends as their round-off. How large these are shows when the states are moved; or,
+ * where they have nothing to do with the states' scales, as in (1 + q/g)**n - 1 for q far below g, in the
+ * second difference of three points so near to each other that it is nothing else.
  */
+static void MODEL(find_noise)(const MODEL(block) *m, real *noise)
+{
+    real *const first = m->node, *const second = first + m->means, *const third = second + m->means;
+    MODEL(integrands)(m->x, &m->p, first);
+    MODEL(integrands_aside)(m, ASIDE, second);
+    for (long k = 0; k < m->means; ++k) {
+        const real change = size_of(second[k] - first[k]);
+        noise[k] = chosen(change < 1e300, (NOISE / ASIDE) * change, zero);
+    }
+    for (double apart = NEAREST; apart < FARTHEST; apart *= FARTHER) {
+        MODEL(integrands_aside)(m, apart, second);
+        MODEL(integrands_aside)(m, 2.0 * apart, third);
+        for (long k = 0; k < m->means; ++k) {
+            const real bend = size_of(first[k] - 2.0 * second[k] + third[k]);
+            noise[k] = largest_of(noise[k], chosen(bend < 1e300, bend, zero));
+        }
+    }
+}
+
+/* The lanes in which FINE nodes are too few: the step is too long. */
 static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
 {
     real *const noise = m->gap; /* no longer needed by Newton's method */
-    MODEL(integrands)(m->x, &m->p, noise);
-    for (long k = 0; k < m->n; ++k) {
-        const real by = ASIDE * (m->largest[k] + size_of(m->x[k]));
-        m->reached[k] = m->x[k] + chosen(m->x[k] < 0.0, -by, by);
-    }
-    MODEL(integrands)(m->reached, &m->p, m->node);
-    for (long k = 0; k < m->means; ++k) {
-        const real change = size_of(m->node[k] - noise[k]);
-        noise[k] = chosen(change < 1e300, (NOISE / ASIDE) * change, zero);
-    }
+    MODEL(find_noise)(m, noise);
     return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
 

@@ -10,6 +10,7 @@ the motion would lose these functions to round-off.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, final
 
@@ -18,7 +19,8 @@ import numpy as np
 from piezo_sym.analysis.conserved import basis_of, conserved_functions
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.module import GeneratedModule, held, row_name
+from piezo_sym.run.guard import LIMIT, stop_rows
+from piezo_sym.run.module import GeneratedModule, by_name, held, row_name
 
 MOST_STEPS, MOST_MOVES = 400, 40
 LONGEST = 1e20  # the longest Euler step, over the first
@@ -26,6 +28,9 @@ GROWTH = 4.0  # of the Euler step
 CONTRACTION = 0.25  # the largest second Newton move of an Euler step, over the first
 AT_REST = 1e-9  # a move at rest, over the states' sizes
 ROUND_OFF = 1e-13
+AT_LIMIT = (
+    1.0 + 1e-15
+)  # the effort of a stop that yields, over its limit: not below it by round-off
 COUNTS = 1e-6  # the least relative change of a body's temperature that counts as a motion
 UNDETERMINED = 1e-6  # components of a unit vector below this are round-off
 SINGULAR = 1e-10  # over the greatest singular value of the scaled Jacobian
@@ -55,13 +60,15 @@ class RestSearch:
     free: Rows  # of the states that are not held
     rows: Rows  # of the coordinates z (k,) among the states
     basis: FloatArray  # dx/dz (n, k)
+    stops: Mapping[str, slice]  # the rows of the state of each stop
 
     @classmethod
     def of(
         cls, module: GeneratedModule, parameters: Any, u: FloatArray, start: FloatArray, free: Rows
     ) -> RestSearch:
         """Return the search in which all free states are coordinates."""
-        return cls(module, parameters, u, free, free, np.eye(start.size)[:, free])
+        stops = stop_rows(module, parameters, start, u)
+        return cls(module, parameters, u, free, free, np.eye(start.size)[:, free], stops)
 
     def keeping(self, way: Approach) -> RestSearch:
         """Return the search that keeps the linear functions which are conserved on the way."""
@@ -93,6 +100,36 @@ class RestSearch:
         with np.errstate(all="ignore"):
             margins = self.module.margins(x, self.u, self.parameters)
         return bool(np.all(held(self.module, margins)) and np.isfinite(self.rates(x)).all())
+
+    def _to_limit(self, x: FloatArray, ahead: FloatArray) -> float:
+        """Return the fraction of the way from x to `ahead` at which a stop meets its limit, or 1."""
+        first, last = (
+            by_name(self.module.ELEMENTS, self.parameters, self._elements(at)) for at in (x, ahead)
+        )
+        meets = 1.0
+        for stop in self.stops:
+            limit = first[f"{stop}{LIMIT}"] * AT_LIMIT
+            before, after = np.abs(first[f"{stop}.effort"]), np.abs(last[f"{stop}.effort"])
+            beyond = (after > limit) & (before < limit)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                parts = np.where(beyond, (limit - before) / (after - before), 1.0)
+            meets = min(meets, float(np.min(parts, initial=1.0)))
+        return meets
+
+    def limited(self, x: FloatArray) -> FloatArray:
+        """Return x with stops that a long step has moved beyond their limits moved back to them."""
+        for stop, rows in self.stops.items():
+            values = by_name(self.module.ELEMENTS, self.parameters, self._elements(x))
+            effort, limit = np.abs(values[f"{stop}.effort"]), values[f"{stop}{LIMIT}"] * AT_LIMIT
+            with np.errstate(divide="ignore", invalid="ignore"):
+                part = np.where(effort > limit, limit / effort, 1.0)
+            x = x.copy()
+            x[rows] *= part
+        return x
+
+    def _elements(self, x: FloatArray) -> FloatArray:
+        with np.errstate(all="ignore"):
+            return np.asarray(self.module.elements(x, self.u, self.parameters))
 
     def find(self, start: FloatArray) -> tuple[RestSearch, FloatArray, FloatArray]:
         """Return the search with the fewest coordinates, the state at rest, and coordinates' sizes.
@@ -130,12 +167,17 @@ class RestSearch:
             matrix = np.eye(self.rows.size) - step * slope
             move = _solved(matrix, step * self.rates(x), size)
             ahead = x + self.basis @ move
+            meets = self._to_limit(x, ahead)
+            if 0 < meets < 1 and self.inside(here := self.limited(x + meets * (ahead - x))):
+                x, size = here, np.maximum(size, np.abs(here[self.rows]))
+                states.append(x)
+                continue
             round_off = self._round_off_sizes(x, matrix, step)
             reached = np.maximum.reduce([size, np.abs(ahead[self.rows]), np.abs(move), round_off])
             if not self.inside(ahead) or not self._contracts(matrix, step, move, ahead, reached):
                 step /= GROWTH
                 continue
-            x, size = ahead, reached
+            x, size = self.limited(ahead), reached
             states.append(x)
             if _relative(move, size) <= AT_REST and step * _fastest(slope) > 1:
                 return Approach(states, size, None)
@@ -175,7 +217,7 @@ class RestSearch:
             kept = values > SINGULAR * values[0] if values.size else values > 0
             parts = left.T[kept] @ (self.rates(x) / row_size) / values[kept]
             move = -scale * (right[kept].T @ parts)
-            ahead = x + self.basis @ move
+            ahead = self.limited(x + self.basis @ move)
             if not self.inside(ahead):
                 break
             x = ahead

@@ -14,7 +14,7 @@ import numpy as np
 from piezo_sym.errors import RunError, listing
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.inputs import Segment
-from piezo_sym.run.module import GeneratedModule, by_name, row_name
+from piezo_sym.run.module import GeneratedModule, by_name, row_name, rows
 from piezo_sym.run.system import DrivenModule
 
 NAME = re.compile(r"[A-Za-z_]\w*")
@@ -49,6 +49,21 @@ def check_start(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> No
 def limited(module: GeneratedModule) -> list[str]:
     """Return the elements that have a limit: stops."""
     return [r.name.removesuffix(LIMIT) for r in module.ELEMENTS if r.name.endswith(LIMIT)]
+
+
+def stop_rows(module: GeneratedModule, p: Any, x: FloatArray, u: FloatArray) -> dict[str, slice]:
+    """Return the rows of the state of each stop: no other state moves its effort."""
+    found, stops = dict[str, slice](), limited(module)
+    with np.errstate(all="ignore"):
+        before = by_name(module.ELEMENTS, p, module.elements(x, u, p)) if stops else {}
+        for own in rows(module.STATES, p) if stops else ():
+            moved = x.copy()
+            moved[own] = 2.0 * x[own] + 1.0
+            after = by_name(module.ELEMENTS, p, module.elements(moved, u, p))
+            for stop in stops:
+                if np.any(np.asarray(after[f"{stop}.effort"]) != before[f"{stop}.effort"]):
+                    found[stop] = own
+    return found
 
 
 def slack_of(initial: object, parameters: object) -> float:

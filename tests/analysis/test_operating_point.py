@@ -240,3 +240,20 @@ def test_a_stop_that_slipped_leaves_the_place_open_but_no_temperature() -> None:
     assert abs(found.initial["z"][0]) <= 5.0 / 2e6
     assert {"q", "z[1]", "S_g"} <= {*found.undetermined}
     assert "S" not in found.undetermined
+
+
+@pytest.mark.some(2)
+@pytest.mark.parametrize("volts", [50.0, 100.0, 120.0, 150.0])
+def test_stops_rest_within_their_limits(volts: float) -> None:
+    """Long steps moved them beyond; a run from there was refused."""
+    found = operating_point("stack_maxwell", inputs={"V_in": volts})
+    p = load("stack_maxwell").parameters
+    k, k_s, r = (np.array(p[name].si) for name in ("k", "k_s", "r"))
+    z, q = np.array(found.initial["z"]), float(found.initial["q"])
+    assert np.all(np.abs(z) <= r * (1 + 1e-12))
+    yields = np.abs(z) > r * (1 - 1e-9)
+    assert yields.any()
+    assert np.allclose(z[~yields], q, rtol=1e-9)
+    assert float(k * q + (k_s * z).sum()) == pytest.approx(float(p["a"].si) * volts, rel=1e-9)
+    run = simulate("stack_maxwell", inputs={"V_in": volts}, initial=found.initial, duration=1e-2)
+    assert float(np.abs(run.q - q).max()) <= 1e-9 * q
