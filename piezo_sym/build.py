@@ -149,8 +149,13 @@ def generate(
     FileError
         If a file cannot be written.
     UsageError
-        If a model whose name differs only by case is there.
+        If `model` is no `Model`, or a model whose name differs only by case is there.
     """
+    from piezo_sym.spec.model import Model  # loads pydantic
+
+    if not isinstance(model, Model):
+        remedy = "load it first: generate(load('piezo_stack'))"
+        raise UsageError(f"{quote(model)} is no Model", "generate", remedy=remedy)
     folder = path_of(out, "generate.out")
     refuse_case([model.name], folder)
     files = render(model, allow_unproved=allow_unproved)

@@ -12,7 +12,7 @@ from piezo_sym import Model, PiezoError, derive, generate, load
 from piezo_sym.build import render
 from piezo_sym.codegen import PRINTERS
 from piezo_sym.codegen.template import template_of
-from piezo_sym.errors import FileError, ProofError
+from piezo_sym.errors import FileError, ProofError, UsageError
 from tests.conftest import full_disk
 
 ROOT = Path(__file__).parents[2]
@@ -40,6 +40,12 @@ def test_generate_leaves_nothing_else(model, tmp_path):
     generate(model, tmp_path)
     generate(model, str(tmp_path))
     assert sorted(p.name for p in tmp_path.rglob("*") if p.is_file()) == FILES
+
+
+@pytest.mark.parametrize("made", [str, derive])
+def test_what_is_no_model_is_refused(model, made, tmp_path):
+    with pytest.raises(UsageError, match=r"^generate: .* is no Model; load it first: generate\(lo"):
+        generate(made(model), tmp_path)
 
 
 def test_a_file_that_cannot_be_replaced_is_named(model, tmp_path):
