@@ -47,7 +47,7 @@ def plot(run: xarray.Dataset) -> Figure:
 
     Raises
     ------
-    UsageError : this is no run, or more than one.
+    UsageError : this is no run, more than one, or one without samples.
     """
     refuse_others(run)
     panels = list(_panels(run))
@@ -85,6 +85,8 @@ def refuse_others(run: xarray.Dataset) -> None:
     if "time" not in run["energy_residual"].dims:
         remedy = "a sweep keeps its runs over time if 'reduce' is left out"
         raise UsageError("this run has no time", where, expected, remedy)
+    if not run["time"].size:
+        raise UsageError("this run has no samples", where, "one sample at least")
     error = str(run["error"].values) if "error" in run else ""
     if error:
         what = f"this run failed: {one_line(error)}"

@@ -89,7 +89,8 @@ def read_initial(
 ) -> FloatArray:
     """Return the state (n,) at t = 0, with inputs u (m,): the default, changed where given."""
     given = getattr(given, "initial", given)  # of an OperatingPoint
-    _refuse_single_lanes(module, parameters, given or ())
+    if isinstance(given, Mapping):
+        _refuse_single_lanes(module, parameters, given)
     names, places = [record.name for record in module.STATES], names_elsewhere(module, "initial")
     hot = {f"T_{record.name}": n for n, record in enumerate(module.BODIES)}
     values = known_keys(given, [*names, *hot], "simulate.initial", places)

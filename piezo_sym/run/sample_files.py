@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from piezo_sym.errors import FileError, PiezoError, UsageError, listing, nearest, quote
-from piezo_sym.files import near_file
+from piezo_sym.files import near_file, path_of
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.samples import Samples, read_samples
 
@@ -54,10 +54,11 @@ def samples_from_csv(
     UsageError : no column has that header, a unit is unknown or no unit of time, or the times do
         not increase.
     """
+    path = path_of(path, "samples_from_csv.path")
     headers = column_headers(path)
     t = 0 if time_column is None else _index_of(headers, time_column, f"{path}.time_column")
     x = _other_column(headers, t, path) if column is None else _index_of(headers, column, str(path))
-    times, values = _columns(Path(path), t, x)
+    times, values = _columns(path, t, x)
     seconds, _ = _factor(headers[t], f"{path}, header", "s")
     factor, unit = _factor(headers[x], f"{path}, header")
     values = values * factor + (ZERO_CELSIUS if headers[x][1] in CELSIUS else 0.0)
@@ -197,11 +198,13 @@ def _refuse_suffix(name: str, unit: str, ends: Collection[str], where: str) -> N
 
 
 def _index_of(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> int:
+    if not isinstance(wanted, str):
+        raise UsageError(f"{quote(wanted)} is no header", where, "the text over a column")
     name, wanted_unit = _name_and_unit(wanted.strip())
     names = [f"{name} [{unit}]" if wanted_unit and unit else name for name, unit in headers]
     wanted = f"{name} [{wanted_unit}]" if wanted_unit else wanted
     if wanted not in names:
-        raise UsageError(f"no column {quote(wanted)}", where, remedy=nearest(str(wanted), names))
+        raise UsageError(f"no column {quote(wanted)}", where, remedy=nearest(wanted, names))
     if names.count(wanted) > 1:
         raise UsageError(f"two columns are named {quote(wanted)}", where, "distinct headers")
     return names.index(wanted)

@@ -91,7 +91,7 @@ def read_samples(times: object, values: object, where: str) -> Samples:
     if t[:2].size == 2 and t[0] == t[1]:
         what = f"the first time, {t[0]:g} s, stands twice"
         raise UsageError(what, f"{where}.times", "a value before a jump", "leave out the first row")
-    for n in np.flatnonzero(t[2:] == t[:-2])[:1] + 2:
+    for n in np.flatnonzero((t[2:] == t[1:-1]) & (t[1:-1] == t[:-2]))[:1] + 2:
         what = f"time {t[n]:g} at entry {n} follows {t[n]:g} twice"
         expected = "strictly increasing times, or one twice for a jump between two values"
         raise UsageError(what, f"{where}.times", expected)

@@ -4,7 +4,7 @@ Input: a waveform's numbers (SI; frequencies in Hz).  Output: a frozen `Signal`,
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
 from math import inf, pi
 from typing import ClassVar, final
@@ -12,7 +12,7 @@ from typing import ClassVar, final
 import numpy as np
 
 from piezo_sym.errors import UsageError
-from piezo_sym.run.checks import FloatArray, number, positive
+from piezo_sym.run.checks import FloatArray, number, positive, vector
 
 #: The signals that `piezo_sym.run` and the command line offer.
 __all__ = ["chirp", "ramp", "sine", "square", "step", "triangle"]
@@ -43,8 +43,10 @@ class Signal(ABC):
             place = f"{type(self).__name__.lower()}.{field.name}"
             object.__setattr__(self, field.name, check(getattr(self, field.name), place))
 
-    def __call__(self, t: FloatArray | float) -> FloatArray:
+    def __call__(self, t: FloatArray | Sequence[float] | float) -> FloatArray:
         """Return the values at the times t [s]; shape of t."""
+        if isinstance(t, list | tuple):
+            t = vector(t, f"{type(self).__name__.lower()}.t")
         return np.asarray(self._values(t))[()]
 
     @abstractmethod

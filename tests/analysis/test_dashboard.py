@@ -200,6 +200,11 @@ def test_one_sample_is_points():
     assert len(panel(figure, "heat").lines) == 2
 
 
+def test_a_run_without_samples_is_refused():
+    with pytest.raises(UsageError, match=r"^plot.run: this run has no samples; expected one"):
+        plot(actuator(times=3).isel(time=slice(0, 0)))
+
+
 def test_it_can_be_saved(tmp_path):
     plot(actuator(times=11)).savefig(tmp_path / "run.png")
     assert (tmp_path / "run.png").stat().st_size > 10_000

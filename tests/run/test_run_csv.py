@@ -64,10 +64,13 @@ def test_columns_by_name(write):
         ("t,V\n0,1\n", {"column": "W"}, UsageError, "no column 'W'; known: t, V"),
         ("t,Volt\n0,1\n", {"column": "volt"}, UsageError, "did you mean 'Volt'?"),
         ("t,V\n0,1\n", {"time_column": "s"}, UsageError, "time_column: no column 's'"),
+        ("t,V\n0,1\n", {"column": 1}, UsageError, "'1' is no header; expected the text over"),
+        ("t,V\n0,1\n", {"time_column": 0}, UsageError, "time_column: '0' is no header"),
         ("t,V,V\n0,1,2\n", {"column": "V"}, UsageError, "two columns are named 'V'"),
         ("t,V,W\n0,1,2\n", {}, UsageError, "2 columns beside the times: V, W; expected one"),
         ("t,V\n0,1\n", {}, UsageError, "1 times and 1 values"),
         ("t,V\n1,1\n0,1\n", {}, UsageError, "time 0 at entry 1 follows 1"),
+        ("t,V\n0,1\n1,1\n2,1\n1,1\n", {}, UsageError, "time 1 at entry 3 follows 2"),
         ("t [mm],V\n0,1\n1,1\n", {}, UsageError, "'t' is in mm; expected a time, such as in s"),
         ("t [ms],V [vlot]\n0,1\n1,1\n", {}, UsageError, "header: unknown unit 'vlot'"),
         ("0,1\n1,2\n2,3\n", {}, FileError, "line 1 has numbers where names are expected"),
@@ -93,6 +96,11 @@ def test_samples_are_shown_by_their_span(write):
 def test_missing_file(tmp_path):
     with pytest.raises(FileError, match=r"none.csv: cannot be read: No such file"):
         samples_from_csv(tmp_path / "none.csv")
+
+
+def test_what_is_no_path_is_refused():
+    with pytest.raises(UsageError, match=r"^samples_from_csv.path: '5' is no path; expected"):
+        samples_from_csv(5)
 
 
 def test_units_of_the_header_are_converted(write):

@@ -24,6 +24,7 @@ REFUSED = [
     ({"inputs": {"V_in": [1, 2, 3]}}, "simulate.inputs.V_in: '[1, 2, 3]' is no input"),
     ({"inputs": {"V_in": ([0, 1], [1, nan])}}, "simulate.inputs.V_in.values[1]: 'nan'"),
     ({"inputs": {"V_in": ([0, 1, 1, 1], [1, 2, 3, 4])}}, "at entry 3 follows 1 twice"),
+    ({"inputs": {"V_in": ([0, 1, 2, 1], [1] * 4)}}, "V_in.times: time 1 at entry 3 follows 2"),
     ({"inputs": {"V_in": ([0, 1], [1, 2, 3])}}, "simulate.inputs.V_in: 2 times and 3 values"),
     (
         {"inputs": {"V_in": ([0, 0.05], [1, 2])}},
@@ -52,6 +53,7 @@ REFUSED = [
     ({"parameters": {"hysteron_count": 2.0}}, "expected a whole number >= 1"),
     ({"parameters": {"hysteron_count": True}}, "expected a whole number >= 1"),
     ({"initial": {"Q": 0}}, "simulate.initial: unknown name 'Q'"),
+    ({"initial": 5}, "simulate.initial: '5' is not a mapping; expected a mapping of names to"),
     ({"initial": {"q": nan}}, "simulate.initial.q: 'nan' is not a finite number"),
     ({"initial": {"q": [0, 0]}}, "simulate.initial.q: '[0, 0]' is a list; expected one number"),
     ({"initial": {"phi": [0]}}, "simulate.initial.phi: 1 values for 2 lanes; expected 2"),

@@ -170,6 +170,24 @@ def test_breaks_that_round_to_one_another_are_one():
 
 
 @pytest.mark.parametrize(
+    "signal",
+    [
+        sine(2, 5, phase=0.3),
+        step(0.1, 0, 1),
+        ramp(0.1, 0.2, 0, 1),
+        triangle(1, 5),
+        square(1, 5),
+        chirp(1, 1, 2, 0.15),
+        samples([0, 1], [1, 2]),
+    ],
+)
+def test_lists_of_times_are_taken_as_arrays(signal):
+    times = [0, 0.1, 0.25]
+    assert signal(times).tolist() == signal(np.array(times)).tolist()
+    assert signal(tuple(times)).shape == (3,)
+
+
+@pytest.mark.parametrize(
     ("make", "where"),
     [
         (lambda: sine(1, 0), "sine.frequency: '0' is not positive"),
@@ -191,6 +209,8 @@ def test_breaks_that_round_to_one_another_are_one():
             lambda: samples([0, 1, 1, 1], [1, 2, 3, 4]),
             "at entry 3 follows 1 twice; expected strictly",
         ),
+        (lambda: samples([0, 1, 2, 1, 3], [0] * 5), "times: time 1 at entry 3 follows 2"),
+        (lambda: sine(1, 2)([0, "x"]), "sine.t[1]: 'x' is not a finite number"),
         (lambda: samples([0, nan], [1, 2]), "samples.times[1]: 'nan'"),
         (lambda: samples(np.array([0, inf]), [1, 2]), "samples.times: entry 1 is inf"),
         (lambda: samples([0, 1], [True, 2]), "samples.values[0]: 'True'"),
