@@ -115,7 +115,7 @@ def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
 
     of_spec = about(spec, SpecError, NetworkError, ProofError)
     if options["outputs"] not in (None, "all"):
-        options["outputs"] = options["outputs"].split(",")
+        options["outputs"] = [name.strip() for name in options["outputs"].split(",")]
     if _is_store(out):
         options["store"] = out
     with warnings_as_lines(), keeping(out), of_spec:

@@ -140,7 +140,7 @@ def test_a_wrong_name_is_refused_in_one_line(asked, said):
 def test_the_command(tmp_path):
     out = tmp_path / "run.csv"
     command = ["simulate", "piezo_stack", "--duration", "1e-3", "--out", str(out)]
-    result = CliRunner().invoke(app, [*command, "--outputs", "spring,hysteron.heat"])
+    result = CliRunner().invoke(app, [*command, "--outputs", "spring, hysteron.heat"])
     assert result.exit_code == 0
     assert "force of spring 'spring'" in result.stdout
     head = out.read_text().splitlines()[0]
