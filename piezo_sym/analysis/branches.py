@@ -114,7 +114,8 @@ def steady_branches(
 
     Parameters
     ----------
-    module : a generated module; `piezo_sym.steady_branches` also takes a model, a name or a path.
+    model : the name of a shipped spec, the path of a spec file, or a `Model`; here, of
+        `piezo_sym.analysis`, a generated module.
     inputs : function of the frequency [Hz] to inputs as for `simulate`, which repeat with it.
     frequencies, temperatures : least and greatest [Hz], [K]; temperatures when left out from the
         module's own start to 20 times that. Curves end where they leave the ranges.

@@ -93,7 +93,8 @@ def operating_point(
 
     Parameters
     ----------
-    module : a generated module; `piezo_sym.operating_point` also takes a model, name, path.
+    model : the name of a shipped spec, the path of a spec file, or a `Model`; here, of
+        `piezo_sym.analysis`, a generated module.
     inputs : name -> number, SI units; the others have their defaults.
     temperatures : body -> temperature [K] at which it is held; the other bodies are free.
     parameters, initial : as for `simulate`; the search begins at `initial`.

@@ -109,7 +109,8 @@ def periodic_steady_state(
 
     Parameters
     ----------
-    module : a generated module; `piezo_sym.periodic_steady_state` also takes a model, name, path.
+    model : the name of a shipped spec, the path of a spec file, or a `Model`; here, of
+        `piezo_sym.analysis`, a generated module.
     inputs : as for `simulate`; they repeat with the period 1/frequency.
     frequency : of the inputs [Hz]; of several, the greatest that they have in common. If no input
         varies, a state of rest is searched for; `operating_point` does that directly.

@@ -17,7 +17,7 @@ from typing import Any, NoReturn, final
 import numpy as np
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
-from piezo_sym.run.checks import FloatArray, calling, integer, number, positive, vector
+from piezo_sym.run.checks import FloatArray, calling, integer, is_number, number, positive, vector
 from piezo_sym.run.collocation import read_order
 from piezo_sym.run.engine.batch import Stepping
 from piezo_sym.run.engine.engine import engine_of
@@ -60,8 +60,10 @@ class Stepper:
 
     Parameters
     ----------
-    module : a generated module; `piezo_sym.Stepper` takes a model, a name or a path.
-    step : length of a step [s]; a step that fails is halved.
+    model : a shipped name, a path or a `Model`; here, of `piezo_sym.run`, a generated module.
+    step : length of a step [s]; a step that fails is halved. Motions much faster than it ring from
+        step to step after a jump, at order 2, instead of decaying: take shorter steps, `every` so
+        many, or a higher order. Of `simulate`, `dissipative_start` damps them; a Stepper has none.
     order : 2, 4, 6, 8, 10 or 12: the order of the error in the step, where all is smooth.
     parameters, initial, inputs : name -> number, as for `simulate`, `<bank>_count` and `T_<body>`
         among them; `inputs` are those at t = 0, numbers only. A list of parameters makes as many
@@ -219,6 +221,8 @@ class Stepper:
         size = len(self._late)
         stored = self._late[(self._taken + size - 1) % size]  # written again if this call fails
         for row, value in zip(stored.T, u, strict=True):
+            if isinstance(value, str) or not (self._many or is_number(value)):
+                raise TypeError("NumPy would take '1' and True, too")
             row[:] = value
         if size > 1:  # C checks those that act
             if not np.all(np.isfinite(stored)):
@@ -272,7 +276,7 @@ class Stepper:
     def _no_inputs(self, u: object) -> UsageError:
         if isinstance(u, Sequence) and not isinstance(u, str) and len(u) == len(self.inputs):
             self._check(u)
-        expected = f"one number each for {', '.join(self.inputs)}"
+        expected = f"a list, in this order, of one number each for {', '.join(self.inputs)}"
         if self._many:
             expected += f", or {len(self._plants)} numbers, one per plant"
         return UsageError("these are no inputs", "Stepper.step", expected)

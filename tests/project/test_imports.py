@@ -141,6 +141,7 @@ def test_an_unknown_public_name_is_an_attribute_error():
     [
         ("simulate", "piezo_sym.run.simulate"),
         ("Stepper", "piezo_sym.run.stepper"),
+        ("operating_point", "piezo_sym.analysis.operating_point"),
         ("periodic_steady_state", "piezo_sym.analysis.steady"),
         ("periodic_steady_states", "piezo_sym.analysis.steady"),
         ("steady_branches", "piezo_sym.analysis.branches"),
@@ -159,5 +160,6 @@ def test_public_functions_take_what_their_homes_take(name, home):
         if parameter.name == "progress":
             wanted[n] = parameter.replace(annotation=taken[n].annotation)
     assert taken == wanted
-    for parameter in taken:
+    assert "\n    module :" not in public.__doc__
+    for parameter in (first, *taken):
         assert re.search(rf"\b{parameter.name}\b", public.__doc__) or "as for" in public.__doc__

@@ -64,6 +64,18 @@ def test_parameters_and_starts_are_those_given():
     assert actuator.x[0] == 1e-3
 
 
+@pytest.mark.parametrize("wrong", ["1", True, [1]])
+def test_what_is_no_number_is_refused_before_a_delay(wrong):
+    late = Stepper("piezo_stack", step=H, delay=2)
+    with pytest.raises(UsageError, match=r"step: input 'V_in': .* is not a finite number"):
+        late.step([0.0, wrong, 298.15])
+    with pytest.raises(UsageError, match="a list, in this order, of one number each for F_ext"):
+        late.step(np.array([[0.0], [50.0], [298.15]]))
+    pair = Stepper("piezo_stack", step=H, parameters=[{}, {}])
+    with pytest.raises(UsageError, match="a list, in this order, of one number each for F_ext"):
+        pair.step({"F_ext": 0.0, "V_in": 1.0, "T_e": 298.15})
+
+
 @pytest.mark.parametrize("u", [[0.0, 50.0], [0.0, 50.0, 298.15, 1.0], "abc", 50.0, [50.0]])
 def test_wrong_inputs_are_refused(u):
     with pytest.raises(UsageError, match="one number each for F_ext, V_in, T_e"):
@@ -243,5 +255,6 @@ def test_a_stepper_is_not_pickled_but_another_can_be_made():
 def test_help_shows_the_methods_and_what_they_take():
     said = pydoc.plain(pydoc.render_doc(Stepper))
     assert "-> piezo_sym.run.stepper.Stepper" in said
+    assert "ring from step to step after a jump, at order 2," in " ".join(said.split())
     for words in ("    step(u) : ", "    reset(x=None) : ", "<bank>_count", "[d[name] for name in"):
         assert words in said
