@@ -4,7 +4,7 @@ Input: a waveform's numbers (SI; frequencies in Hz).  Output: a frozen `Signal`,
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from math import inf, pi
 from typing import ClassVar, final
@@ -43,7 +43,7 @@ class Signal(ABC):
             place = f"{type(self).__name__.lower()}.{field.name}"
             object.__setattr__(self, field.name, check(getattr(self, field.name), place))
 
-    def __call__(self, t: FloatArray | Sequence[float] | float) -> FloatArray:
+    def __call__(self, t: FloatArray | float | list[float] | tuple[float, ...]) -> FloatArray:
         """Return the values at the times t [s]; shape of t."""
         if isinstance(t, list | tuple):
             t = vector(t, f"{type(self).__name__.lower()}.t")
