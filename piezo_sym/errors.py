@@ -75,8 +75,8 @@ class UsageError(PiezoError):
 
 
 @final
-class UnknownNameError(UsageError):
-    """A call that gives a value to a name that does not exist."""
+class UnknownNameError(UsageError, KeyError):
+    """A call that gives a value to, or asks a table for, a name that does not exist."""
 
     name: str = ""
 

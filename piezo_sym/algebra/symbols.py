@@ -13,7 +13,7 @@ from typing import Any, final
 import sympy as sp
 
 from piezo_sym.algebra.sums import LaneSymbol, SymbolicLaneSum
-from piezo_sym.errors import SpecError, quote
+from piezo_sym.errors import SpecError, UnknownNameError, nearest, quote
 from piezo_sym.expressions.calculus import choices
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.grammar import parse_rule
@@ -84,7 +84,15 @@ class SymbolTable(Mapping[str, sp.Symbol]):
 
     def __getitem__(self, name: str) -> sp.Symbol:
         """Return the symbol of a name."""
-        return self.symbols[name]
+        try:
+            return self.symbols[name]
+        except KeyError:
+            what, remedy = f"unknown name {quote(name)}", nearest(str(name), self.symbols)
+            raise UnknownNameError(what, remedy=remedy) from None
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether a symbol has this name."""
+        return name in self.symbols
 
     def __iter__(self) -> Iterator[str]:
         """Yield the names."""

@@ -10,6 +10,8 @@ from typing import Any, Generic, TypeVar, final, get_args
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
+from piezo_sym.errors import UnknownNameError, nearest, quote
+
 Value = TypeVar("Value")
 
 
@@ -23,7 +25,18 @@ class Table(Mapping[str, Value], Generic[Value]):
         self._items = dict(items or {})
 
     def __getitem__(self, name: str) -> Value:
-        return self._items[name]
+        try:
+            return self._items[name]
+        except KeyError:
+            what, remedy = f"unknown name {quote(name)}", nearest(str(name), self._items)
+            raise UnknownNameError(what, remedy=remedy) from None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._items  # the mapping's own makes an error, as does its get
+
+    def get(self, name: str, default: Any = None, /) -> Any:
+        """Return the value of a name, or the default."""
+        return self._items.get(name, default)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._items)

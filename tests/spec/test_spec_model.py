@@ -6,7 +6,7 @@ import pytest
 from pydantic import ValidationError
 from spec_tools import MINIMAL, SHIPPED, edited, refusal, refused_edit
 
-from piezo_sym import Model, load
+from piezo_sym import Model, derive, load
 from piezo_sym.errors import SpecError
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.fields import Header, Input, Parameter
@@ -223,6 +223,15 @@ def test_a_models_data_is_not_shared_with_the_caller():
     data["elements"]["mass"]["mass"] = "k"
     assert model.parameters["M"].value == 3.5e-3
     assert model.elements["mass"].mass == "M"
+
+
+def test_a_name_that_no_table_has_is_told_those_like_it(model):
+    for table in (model.parameters, derive(model).symbols):
+        with pytest.raises(KeyError) as error:
+            table["lamb"]
+        assert str(error.value) == "unknown name 'lamb'; did you mean 'lam'?"
+        assert "lamb" not in table
+        assert table.get("lamb", 3) == 3
 
 
 def test_tables_compare_their_order():
