@@ -34,7 +34,7 @@ class Table(Mapping[str, Value], Generic[Value]):
     def __contains__(self, name: object) -> bool:
         return name in self._items  # the mapping's own makes an error, as does its get
 
-    def get(self, name: str, default: Any = None, /) -> Any:
+    def get(self, name: str, default: Any = None, /) -> Value | Any:
         """Return the value of a name, or the default."""
         return self._items.get(name, default)
 
