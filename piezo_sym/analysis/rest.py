@@ -102,7 +102,7 @@ class RestSearch:
         return bool(np.all(held(self.module, margins)) and np.isfinite(self.rates(x)).all())
 
     def _to_limit(self, x: FloatArray, ahead: FloatArray) -> float:
-        """Return the fraction of the way from x to `ahead` at which a stop meets its limit, or 1."""
+        """Return the fraction of the way to `ahead` at which a stop meets its limit, or 1."""
         first, last = (
             by_name(self.module.ELEMENTS, self.parameters, self._elements(at)) for at in (x, ahead)
         )
