@@ -13,6 +13,7 @@ from functools import cache
 
 from piezo_sym.errors import nearest, quote
 from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
+from piezo_sym.expressions.incomplete import incomplete, with_a_point
 from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Pow, Sym, names
 
 LANGUAGE = "numbers, names, + - * / **, (), 'a if x < y else b', or a function as in exp(x)"
@@ -149,13 +150,13 @@ def _parsed(text: str) -> ast.expr:
     check_characters(text)
     check_tokens(text)
     try:
-        return ast.parse(text.strip(), mode="eval").body
+        body = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
-        beside = re.search(r"[\w)] +[\w(]", text) and not re.search(
-            r"\b(if|else|and|or|not)\b", text
-        )
-        remedy = "write * between factors, as in d*v" * bool(beside)
-        raise RefusedError("is not a complete law", LANGUAGE, remedy) from None
+        what, remedy = incomplete(text)
+        raise RefusedError(what, "" if remedy else LANGUAGE, remedy) from None
+    if remedy := with_a_point(text) * any(isinstance(n, ast.Tuple) for n in ast.walk(body)):
+        raise RefusedError("has a decimal comma", remedy=remedy)
+    return body
 
 
 def _expression(node: ast.expr, text: str, depth: int = 0) -> Expr:
@@ -288,5 +289,5 @@ def _call(function: str, args: list[ast.expr], text: str, depth: int) -> Expr:
             expected = f"{function}(x, x_1, y_1, x_2, y_2, ...) with 2 to {MAX_KNOTS} knots"
             raise RefusedError(what, expected, "give each x_k its y_k")
     elif len(args) != count:
-        raise RefusedError(what, f"{count}")
+        raise RefusedError(what, f"{count}", with_a_point(text))
     return Call(function, tuple(_expression(arg, text, depth) for arg in args))

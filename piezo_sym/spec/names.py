@@ -38,7 +38,7 @@ KEYWORDS = (
     | frozenset(f"{_C} {_MATLAB} {_MODELICA}".split())
 )
 DEVICES = frozenset(_DEVICES.split())
-OFFERS = {"lambda": "lam", "in": "inlet", "end": "tip", "time": "t", "der": "d"}
+OFFERS = {"end": "tip", "time": "t", "der": "d"}
 
 
 def check_name(word: str, where: str) -> str:

@@ -88,7 +88,7 @@ HOSTILE = {
     "i, T": "not of the law language",
     "()": "not of the law language",
     "await i": "not of the law language",
-    "yield": "not a complete law",
+    "yield": "has a keyword of Python, 'yield'",
     "i T": "not a complete law",
     "i +": "not a complete law",
     "*i": "not",
@@ -103,6 +103,36 @@ HOSTILE = {
 @pytest.mark.parametrize(("text", "reason"), HOSTILE.items(), ids=lambda value: ascii(value)[:30])
 def test_refused(text, reason):
     assert reason in refused_law(text)
+
+
+KEYWORDS = ["lambda", "in", "is", "as", "def", "global", "with", "from", "class", "del"]
+
+
+@pytest.mark.parametrize("word", KEYWORDS)
+def test_a_keyword_is_no_name(word):
+    message = refused_law(f"{word}*v")
+    assert f"has a keyword of Python, '{word}'; call it '{word}_0'" in message
+
+
+UNFINISHED = {
+    "R_e*(1 + al*(T - T_0)*i": "close the bracket that opens at column 5",
+    "exp(v": "close the bracket that opens at column 4",
+    "d*v)": "the ')' at column 4 closes no bracket",
+    "d*v if v > 0": "an 'else' is missing, as in 'd*v if v > 0 else 0'",
+    "0,4*v": "has a decimal comma; write 0.4, with a point",
+    "(d + 0,25)*v": "write 0.25, with a point",
+    "max(v, 0,5)": "write 0.5, with a point",
+}
+
+
+@pytest.mark.parametrize(("text", "remedy"), UNFINISHED.items())
+def test_what_is_missing_in_a_law_is_said(text, remedy):
+    assert remedy in refused_law(text)
+
+
+def test_a_decimal_comma_in_a_condition_is_told_to_be_a_point():
+    error = refusal(parse_condition, "v > 0,4*v", "domain.assume[0]")
+    assert "write 0.4, with a point" in str(error)
 
 
 def test_a_power_of_another_language_is_told_how_it_is_written_here():
