@@ -14,6 +14,7 @@ from typing import Any, final
 
 from piezo_sym.cli.output import about
 from piezo_sym.errors import SpecError, UsageError, listing, nearest, quote
+from piezo_sym.expressions.incomplete import with_a_point
 from piezo_sym.files import path_text
 
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)(?P<end>\)?)")
@@ -63,6 +64,8 @@ def signal(text: str, where: str, read: Callable[[str, str, str], float] | None 
     if text in SIGNALS:
         raise UsageError(f"{quote(text)} has no numbers", where, spelled(text))
     call = CALL.fullmatch(text)
+    if text.endswith((".csv", ".txt")):
+        raise UsageError(f"{quote(text)} is a file", where, f"@{text}")
     if call is None:
         return value(text)
     name = call["name"]
@@ -131,8 +134,8 @@ def number(text: str, where: str) -> float:
     try:
         value = float(text.replace("_", "x"))  # float() would skip underscores
     except ValueError:
-        expected = "such as 0.5 or 1e-3, in SI"
-        raise UsageError(f"{quote(text)} is no number", where, expected) from None
+        expected, remedy = "such as 0.5 or 1e-3, in SI", with_a_point(text)
+        raise UsageError(f"{quote(text)} is no number", where, expected, remedy) from None
     return int(value) if value.is_integer() and text.strip().isdigit() else value
 
 

@@ -9,7 +9,7 @@ NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 #: The keywords of Python that a law may have, or that are no one's names.
 NO_NAMES = frozenset({"if", "else", "and", "or", "not", "True", "False", "None"})
 KEYWORDS = frozenset(kwlist) - NO_NAMES
-WITH_A_COMMA = re.compile(r"(?<![\w.,])\d+,\d+(?![\w.,])")
+WITH_A_COMMA = re.compile(r"(?<![\w.,])\d+,\d+(?![\d.,])")
 
 
 def incomplete(text: str) -> tuple[str, str]:
