@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from piezo_sym.errors import UsageError, quote
+from piezo_sym.errors import ProofError, UsageError, quote
 from piezo_sym.files import path_text, temporary_folder
 from piezo_sym.module_cache import (
     UNPROVED_FOLDER,
@@ -187,7 +187,12 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
     report, found = report_and_texts(model, meanwhile)
     if found and report.failures and (module := _unproved(model, found.filled(data))):
         return module
-    report.raise_if_not_proved()
+    try:
+        report.raise_if_not_proved()
+    except ProofError as error:
+        command = "piezo-sym generate --allow-unproved"
+        error.remedy += f"; or `{command}` writes it all the same, for a run"
+        raise
     assert found is not None  # a report that proves a module has its texts
     return cache_module(model.name, model.sha256, found.filled(data))
 

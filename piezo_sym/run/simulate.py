@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 RTOL = 1e-5
 #: The least duration over the time at which a run starts, which has 16 digits.
 RESOLVED = 1e-11
+#: The longest run [s], over the age of the universe: steps of longer ones lose all digits.
+LONGEST = 1e18
 RTOL_LEAST, RTOL_MOST = 1e-13, 0.1
 
 
@@ -186,7 +188,10 @@ def simulate(
 
 
 def check_resolved(start: float, length: float) -> None:
-    """Raise `UsageError` if a run that starts so late is too short for 16 digits."""
+    """Raise `UsageError` if a run is too long, or too short for the 16 digits of its start."""
+    if length > LONGEST:
+        what = f"{quote(length)} is too long"
+        raise UsageError(what, "simulate.duration", f"at most {LONGEST:g} s")
     if not abs(start) * RESOLVED < length:
         what = f"times from t0 = {start:g} s on cannot be told apart in a run of {length:g} s"
         raise UsageError(what, "simulate.t0", remedy="begin nearer to 0")

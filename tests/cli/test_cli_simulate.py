@@ -233,8 +233,14 @@ REFUSED = [
     (("-i", "V_in"), "--input: 'V_in' has no '='; expected NAME=VALUE"),
     (("-i", "V_in=high"), "--input V_in: 'high' is no number; expected such as 0.5 or 1e-3"),
     (("-i", "V_in="), "--input V_in: '' is no number"),
-    (("-i", "V_in=3,5"), "--input V_in: '3,5' is no number; expected such as 0.5 or 1e-3, in SI; wri"),
-    (("-i", "V_in=3,5V"), "--input V_in: '3,5V' is no number; expected such as 0.5 or 1e-3, in SI; wri"),
+    (
+        ("-i", "V_in=3,5"),
+        "--input V_in: '3,5' is no number; expected such as 0.5 or 1e-3, in SI; wri",
+    ),
+    (
+        ("-i", "V_in=3,5V"),
+        "--input V_in: '3,5V' is no number; expected such as 0.5 or 1e-3, in SI; wri",
+    ),
     (("-i", "V_in=ok.csv"), "--input V_in: 'ok.csv' is a file; expected @ok.csv"),
     (("-i", "V_in=sin(1,2)"), "--input V_in: 'sin' is no signal; did you mean 'sine'?"),
     (("-i", "V_in=exit(1)"), "--input V_in: 'exit' is no signal; known: chirp, ramp"),
@@ -272,6 +278,7 @@ REFUSED = [
     (("--method", "Euler"), "simulate.method: unknown method 'Euler'"),
     (("--times", "1"), "simulate.times: '1' is not allowed"),
     (("--duration", "0"), "simulate.duration: '0.0' is not positive"),
+    (("--duration", "1e300"), "simulate.duration: '1e+300' is too long; expected at most 1e+18 s"),
     (("--duration", "nan"), "simulate.duration: 'nan' is not a finite number"),
     (("--out", "run.txt"), "--out: 'run.txt' has no known ending; expected .nc, .csv"),
     (("--out", "run"), "--out: 'run' has no known ending"),
@@ -288,6 +295,7 @@ def test_a_fault_of_the_spec_has_its_name_and_one_of_an_option_has_not(refused, 
     path = spec_file('"d >= 0", ', "")
     said = refused("simulate", path, "--duration", "1e-3", code=1)
     assert said.startswith("mine.toml: mine.damper: passive is REFUTED")
+    assert "`piezo-sym generate --allow-unproved` writes it all the same, for a run" in said
     path = spec_file('between = ["in", "gnd"]', 'between = ["elsewhere", "gnd"]')
     said = refused("simulate", path, "--duration", "1e-3")
     assert said.startswith("mine.toml: ")
