@@ -161,6 +161,15 @@ def orders(spec: Tables, domain: Iterable[Condition]) -> Iterator[Condition]:
     yield from dict.fromkeys(tests)
 
 
+def without_default(spec: Tables, words: Iterable[str]) -> str:
+    """Return what to do about the first input among names that is 0 where none is given, or ''."""
+    for word in words:
+        if word in spec.inputs and spec.inputs[word].default == 0:
+            value = " (default = 293.15)" if spec.inputs[word].unit == "K" else ""
+            return f"input {word} is 0, as it has no other default: give it one{value}"
+    return ""
+
+
 def greater(condition: Cmp) -> Cmp:
     """Return an equivalent comparison by > or >=: for < and <=, the sides are swapped."""
     turned = {"<": ">", "<=": ">="}

@@ -157,12 +157,14 @@ def test_an_input_that_is_not_declared():
 
 def test_a_condition_on_an_unknown_name():
     message = refused_edit(('"T > T_0"', '"T_x > T_0"'))
-    assert message.startswith("spec: domain.assume[0]: unknown name 'T_x'; did you mean 'T_")
+    assert message.startswith(
+        "spec: domain.assume[0]: 'T_x > T_0': unknown name 'T_x'; did you mean 'T_"
+    )
 
 
 def test_a_condition_on_a_letter():
     message = refused_edit(('"T > T_0"', '"v > 0"'))
-    assert message.startswith("spec: domain.assume[0]: 'v' has no meaning here")
+    assert message.startswith("spec: domain.assume[0]: 'v > 0': 'v' has no meaning here")
 
 
 GEAR = """[elements.gear]

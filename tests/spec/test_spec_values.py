@@ -91,7 +91,7 @@ def test_temperatures_and_heat_capacities_are_positive(old, new):
 @pytest.mark.parametrize("value", ["296.15", "290", "0", "-1"])
 def test_the_environment_is_above_the_reference(value):
     message = refused_edit(("default = 298.15", f"default = {value}"))
-    assert "initial.S: has no finite real value" in message or "expected 'T > T_0'" in message
+    assert "initial.S: has no finite real value" in message or "expected 'T_e > T_0'" in message
 
 
 def test_a_condition_of_the_spec_is_named_by_its_place():
@@ -210,7 +210,33 @@ def test_defaults_and_the_start_lie_in_the_domain(condition):
         ('state = "phi"', 'state = "phi_h"'), ('"lam >= 0"', f'"lam >= 0", "{condition}"')
     )
     assert message.startswith("spec: domain.assume[6]: the values given are outside the domain: ")
-    assert message.endswith("; change a value or the domain")
+    assert "; change a value or the domain" in message
+
+
+@pytest.mark.parametrize(
+    ("start", "said"),
+    [
+        ("", "expected 'T_e > T_0'; change a value or the domain"),
+        ('S = "c_0*log(T_e/T_0)"', "initial.S: has no finite real value"),
+    ],
+)
+def test_an_ambient_without_a_default_is_told_to_have_one(start, said):
+    message = refused_edit(('S = "c_0*log(T_e/T_0)"', start), ("default = 298.15, ", ""))
+    assert said in message
+    more = "; input T_e is 0, as it has no other default: give it one (default = 293.15)"
+    assert message.endswith(more)
+
+
+def test_a_start_outside_the_domain_is_told_before_its_laws_are_evaluated():
+    message = refused_edit(
+        ('S = "c_0*log(T_e/T_0)"', "S = -6.0"),
+        ('"lam >= 0"', '"lam >= 0", "S > -c_0"'),
+        ("T_0*exp(S/c_0)", "T_0*log(2 + S/c_0)*exp(S/c_0)*sqrt(1 + S/c_0)"),
+    )
+    assert message.startswith(
+        "spec: domain.assume[6]: the values given are outside the domain: S ="
+    )
+    assert message.endswith("expected 'S > -c_0'; change initial.S or the domain")
 
 
 def test_a_force_in_the_field_of_a_stiffness_is_told_where_it_belongs():
@@ -257,7 +283,8 @@ def test_a_state_of_one_bank_and_a_list_of_another_in_one_condition():
 
 def test_states_of_two_banks_in_one_condition():
     message = refused_edit(*WITH_SECOND_BANK, ('"lam >= 0"', '"lam >= 0", "phi < psi + 1"'))
-    assert message.startswith("spec: domain.assume[6]: mixes states of the banks hysteron, other")
+    said = "spec: domain.assume[6]: 'phi < psi + 1': mixes states of the banks hysteron, other"
+    assert message.startswith(said)
 
 
 def test_two_banks_with_lists_of_their_own():

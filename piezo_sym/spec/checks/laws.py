@@ -19,6 +19,7 @@ from piezo_sym.spec.tables import (
     bank_states,
     banks,
     bodies,
+    condition_text,
     conditions,
     initial_laws,
     laws,
@@ -108,9 +109,13 @@ def check_laws(spec: Tables) -> None:
     words = dict.fromkeys([*spec.parameters, *spec.inputs, *states(spec), *hot_names])
     lanes = bank_states(spec)
     for condition in domain:
-        _check_words(spec, condition.tree, condition.where, (), words)
-        _check_banks(condition, lanes)
-        _check_temperature(spec, condition)
+        try:
+            _check_words(spec, condition.tree, condition.where, (), words)
+            _check_banks(condition, lanes)
+            _check_temperature(spec, condition)
+        except SpecError as error:  # nobody counts conditions
+            error.what = f"{quote(condition_text(condition.tree))}: {error.what}"
+            raise
 
 
 def _check_letters(law: LawField, words: Collection[str], meant: Mapping[str, str]) -> None:

@@ -26,6 +26,7 @@ from piezo_sym.spec.tables import (
     starts,
     states,
     temperatures,
+    without_default,
 )
 
 #: The value of a name, or its values, one per lane of a bank.
@@ -43,22 +44,34 @@ def check_values(spec: Tables) -> None:
             order, lanes, "the knots of a table do not increase", remedy="sort the knots"
         )
     lanes |= {symbol: tuple(_starts(spec, symbol, lanes)) for symbol in states(spec)}
-    for symbol, body in temperatures(spec).items():
+    tests = (*domain, *_start_conditions(spec))
+    hot = temperatures(spec)
+    late = [test for test in tests if not hot.keys().isdisjoint(names(test.tree))]
+    for condition in tests:  # a state outside the domain may have no temperature
+        if hot.keys().isdisjoint(names(condition.tree)):
+            _check_condition(condition, lanes, remedy=_remedy(condition, spec))
+    for symbol, body in hot.items():
         element = spec.elements[body]
         ports, field = element.ports(body), next(law.field for law in element.laws(body))
         law = next(port.law for port in ports if isinstance(port, Body))
         values = _in_lane(0, names(law), lanes)
-        lanes[symbol] = (_value(law, values, f"elements.{body}.{field}"),)
-    for condition in (*domain, *_start_conditions(spec)):
-        _check_condition(
-            condition, lanes, remedy=f"change a value or the domain{_law(condition, spec)}"
-        )
+        lanes[symbol] = (_value(law, values, f"elements.{body}.{field}", spec),)
+    for condition in late:
+        _check_condition(condition, lanes, remedy=_remedy(condition, spec))
 
 
 def are_all_margins(spec: Tables) -> bool:
     """Return whether the values of a spec have to satisfy the conditions of its domain alone."""
     ordered = any(names(condition.tree) for condition in orders(spec, conditions(spec)))
     return not ordered and not any(_start_conditions(spec))
+
+
+def _remedy(condition: Condition, spec: Tables) -> str:
+    """Return what to do about a condition that the values given do not satisfy."""
+    words = names(condition.tree)
+    value = next((f"initial.{word}" for word in words if word in spec.initial), "a value")
+    more = without_default(spec, words)
+    return f"change {value} or the domain{_law(condition, spec)}" + f"; {more}" * bool(more)
 
 
 def _law(condition: Condition, spec: Tables) -> str:
@@ -111,16 +124,18 @@ def _starts(spec: Tables, symbol: str, lanes: Mapping[str, Values]) -> Iterator[
     for n, tree in enumerate(parts):
         words = names(tree)
         for lane in range(_count(words, lanes)) if len(parts) == 1 else (n,):
-            yield _value(tree, _in_lane(lane, words, lanes), f"initial.{symbol}")
+            yield _value(tree, _in_lane(lane, words, lanes), f"initial.{symbol}", spec)
 
 
-def _value(tree: Expr, values: Mapping[str, Value], where: str) -> Value:
+def _value(tree: Expr, values: Mapping[str, Value], where: str, spec: Tables) -> Value:
     with suppress(ArithmeticError, ValueError):
         value = value_of(tree, values)
         if math.isfinite(float(value)):
             return value
     what = f"has no finite real value{_values_text(values)}"
-    raise SpecError(what, where, remedy="check the values of its parameters")
+    more = without_default(spec, values)
+    remedy = "check the values of its parameters" + f"; {more}" * bool(more)
+    raise SpecError(what, where, remedy=remedy)
 
 
 def _values_text(values: Mapping[str, Value]) -> str:
