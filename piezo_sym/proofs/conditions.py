@@ -8,16 +8,18 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import reduce
 
+from piezo_sym.errors import quote
 from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
+from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tidying import tidied
-from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Pow, names, replaced
+from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Expr, Pow, names, replaced
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.domain import spec_points
 from piezo_sym.proofs.mending import sign_factors
 from piezo_sym.proofs.obligations import NEVER, Question
-from piezo_sym.spec.elements.ports import Body
-from piezo_sym.spec.tables import condition_text
+from piezo_sym.spec.elements.ports import Body, Exchange
+from piezo_sym.spec.tables import condition_text, without_default
 
 #: Of a temperature whose law is longer, a condition has the name.
 MOST_TEXT = 24
@@ -57,6 +59,8 @@ def domain_conditions(
     found = _conditions(broken, iphs, questions[0], fails)
     if not all(map(names, found)) or _no_point_satisfies(found, questions[0], fails):
         return _falling(failed, points)
+    if said := turning(found, iphs):
+        return said
     if not mended(found):
         return ""
     # leave out conditions that the others imply, long ones first
@@ -64,7 +68,8 @@ def domain_conditions(
         rest = tuple(c for c in found if c != claim)
         if rest and mended(rest):
             del found[claim]
-    return in_words([*found.values()], kept=all(_satisfied(c, points) for c in found))
+    broken = [claim for claim in found if not _satisfied(claim, points)]
+    return in_words([*found.values()], broken, iphs)
 
 
 def _no_point_satisfies(
@@ -73,6 +78,23 @@ def _no_point_satisfies(
     """Return whether conditions contradict the domain of a question: then `NEVER` follows."""
     where = (*conditions, *question.where)
     return not fails(Question("", question.order, where, NEVER, NEVER))
+
+
+def turning(conditions: Iterable[Cmp], iphs: IPHS) -> str:
+    """Return a text if a condition says which of two temperatures is higher, or ''.
+
+    Such a condition, which turns where they are equal, would forbid heat to flow one way.
+    """
+    hot = {body.temperature for _, body in iphs.circuit.of(Body)}
+    hot |= {port.input for _, port in iphs.circuit.of(Exchange)}
+    for c in conditions:
+        compared = hot & {*names(c)}
+        level = Cmp("<=", c.left, c.right), Cmp(">=", c.left, c.right)
+        equal = ({**point, **dict.fromkeys(compared, ONE.value)} for point in spec_points(iphs))
+        if len(compared) > 1 and all(all_hold(level, point) for point in equal):
+            said = quote(spell(c.left))
+            return f"; {said} changes its sign with the temperature difference: change the law"
+    return ""
 
 
 def _conditions(
@@ -134,11 +156,12 @@ def _falling(failed: Iterable[Question], points: Iterable[Mapping[str, Value]]) 
     return ""
 
 
-def in_words(conditions: Sequence[str], *, kept: bool) -> str:
-    """Return that conditions mend a row; `kept` if the values of the spec satisfy them."""
+def in_words(conditions: Sequence[str], broken: Iterable[Cmp], iphs: IPHS) -> str:
+    """Return that conditions mend a row; the values of the spec do not satisfy `broken`."""
     said, many = " and ".join(f"'{text}'" for text in conditions), len(conditions) > 1
-    mends = f"mend{'' if many else 's'} it"
-    if not kept:
-        which = "them" if many else "it"
+    mends, words = f"mend{'' if many else 's'} it", {n: None for c in broken for n in names(c)}
+    if words:
+        which, cause = "them" if many else "it", without_default(iphs.model, words)
         mends = f"would mend it, but the values of the spec do not satisfy {which}"
+        mends += f"; {cause}" * bool(cause)
     return f"; the condition{'s' * many} {said} in [domain] {mends}"

@@ -15,7 +15,7 @@ from piezo_sym.expressions.exact_eval import all_hold
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import DomainOracle, simple_counterexample
-from piezo_sym.proofs.conditions import domain_conditions, in_words
+from piezo_sym.proofs.conditions import domain_conditions, in_words, turning
 from piezo_sym.proofs.continuity import neighbour_questions
 from piezo_sym.proofs.domain import rounded_points, spec_points
 from piezo_sym.proofs.laws import branch_questions
@@ -242,8 +242,10 @@ def _mending_condition(
     condition = mending(sign.law, sign.letter, shown)
     if condition is None:
         return ""
+    if said := turning([condition], iphs):
+        return said
     broken = any(all_hold((condition,), point) is False for point in spec_points(iphs))
-    return in_words([condition_text(condition)], kept=not broken)
+    return in_words([condition_text(condition)], [condition] * broken, iphs)
 
 
 def _domain_conditions(obligation: Obligation, iphs: IPHS, solver: SolverLike) -> str:

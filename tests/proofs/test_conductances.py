@@ -87,6 +87,25 @@ def test_what_mends_heat_exchange_with_an_environment_is_said(law, said):
         assert {row.verdict for row in mended} == {Verdict.PROVED}
 
 
+@pytest.mark.parametrize(
+    ("element", "law"),
+    [
+        ("outside", "lam*(T_e - T)/T_e"),
+        ("outside", "lam*(T - T_e)"),
+        ("contact", "lam*(T_1 - T_2)"),
+    ],
+)
+def test_no_condition_forbids_a_body_to_be_warmer_than_what_is_around_it(element, law):
+    text = SPEC.format("lam").replace('"T_e > 0"', '"T_e > 0", "lam >= 0"')
+    head, tail = text.split(f"{element} = ")
+    text = head + f"{element} = " + tail.replace('conductance = "lam"', f'conductance = "{law}"', 1)
+    refuted = [row for row in decided(text) if row.verdict is Verdict.REFUTED]
+    assert refuted
+    for row in refuted:
+        assert "changes its sign with the temperature difference: change the law" in row.reason
+        assert "[domain]" not in row.reason
+
+
 def test_no_condition_mends_a_power_whose_sign_is_that_of_its_letter():
     text = SPEC.format("lam").replace("[inputs]", 'W = { value = 1.0, unit = "N" }\n[inputs]')
     damper = 'damper = { kind = "damper", between = ["tip", "wall"], force = "W", heats = "a" }'

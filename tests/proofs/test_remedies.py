@@ -167,6 +167,13 @@ def test_two_rows_of_one_cause_say_one_condition():
     assert said == {"the condition 'n > 0' in [domain] mends it"}
 
 
+def test_an_input_without_a_default_is_told_to_have_one():
+    text = SPEC.replace(", default = 320.0", "") + AIR.replace("LAW", "h")
+    found = {row.id: row.reason for row in verify(derive(parse(text))).rows}
+    more = "; input T_e is 0, as it has no other default: give it one (default = 293.15)"
+    assert f"the values of the spec do not satisfy them{more}" in found["exergy"]
+
+
 AIR = 'air = { kind = "ambient", body = "body", conductance = "LAW", input = "T_e" }\n'
 WARM_AIR = assuming(SPEC + AIR, '"T_e > 0", "h >= 0"')
 JUMPS = {
