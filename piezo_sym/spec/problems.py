@@ -59,8 +59,10 @@ def all_problems(error: ValidationError, spec: Mapping[str, Any]) -> SpecError:
 
 
 def _left(detail: ErrorDetails, spec: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the known keys of the table of an unknown one, without those that it has."""
+    """Return the known keys of the table of an unknown one, without those that an element has."""
     known = _known([str(part) for part in detail["loc"]])
+    if "elements" not in detail["loc"][:-1]:
+        return known
     table: Any = spec
     for part in detail["loc"][:-1]:  # pydantic names the kind of an element, too
         table = table.get(part, table) if isinstance(table, Mapping) else {}

@@ -289,7 +289,7 @@ REFUSED = {
     '[components.one]\nnodes = { tip = "x" }': "components.one.spec: is missing; add it",
     '[components]\none = "cell.toml"': "components.one: 'cell.toml' does not fit",
     ONE.replace("nodes", "node"): "components.one.node: unknown key 'node'; did you mean 'nodes'?",
-    ONE + "node = 3": "components.one.node: unknown key 'node'; known: parameters, inputs, without",
+    ONE + "node = 3": "components.one.node: unknown key 'node'; did you mean 'nodes'?",
     ONE.replace("base", "bse"): "components.one.nodes.bse: 'bse' is no node of 'cell'; did you mea",
     ONE.replace("base", "gnd"): "'gnd' is a reference, the same node in all models; leave it out",
     ONE.replace("base", "wall"): "'wall' is a reference, the same node in all models; leave it out",

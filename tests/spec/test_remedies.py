@@ -103,9 +103,11 @@ def mend(text: str, message: str) -> str:
         while first.endswith("[") and lines.pop(int(found[2]) - 1) != "]":
             pass
         return "\n".join(lines)
-    if found := re.search(r"unknown key '(at|between)'; did you mean '(at|between)'\?", message):
+    if found := re.search(r"(\w+)\.\w+: unknown key '(at|between)'; did you mean '(\w+)'", message):
         nodes = {"at": '"tip"', "between": '["tip", "wall"]'}
-        return text.replace(f"{found[1]} = {nodes[found[1]]}", f"{found[2]} = {nodes[found[2]]}")
+        before, table, own = text.partition(f"[elements.{found[1]}]")
+        old, new = (f"{key} = {nodes[key]}" for key in found.groups()[1:])
+        return before + table + own.replace(old, new, 1)
     if found := re.search(r"calls '(\w+)', .*did you mean '(\w+)'", message):
         return text.replace(found[1], found[2])
     if found := re.search(r"'([\w ]+)'[^;]*(?:;.*)?; did you mean '(\w+)'\?", message):
