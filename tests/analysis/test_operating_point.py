@@ -242,7 +242,7 @@ def test_a_stop_that_slipped_leaves_the_place_open_but_no_temperature() -> None:
     assert "S" not in found.undetermined
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("volts", [50.0, 100.0, 120.0, 150.0])
 def test_stops_rest_within_their_limits(volts: float) -> None:
     """Long steps moved them beyond; a run from there was refused."""

@@ -79,7 +79,7 @@ def test_what_is_drawn(number, missing):
 
 
 #: Parts of 25 networks; all 80 in the long tier.
-LAWS = [n if n < 4 else pytest.param(n, marks=pytest.mark.long) for n in range(80)]
+LAWS = [n if n < 3 else pytest.param(n, marks=pytest.mark.long) for n in range(80)]
 PARTS = [n if n < 1 else pytest.param(n, marks=pytest.mark.long) for n in range(80)]
 
 
