@@ -1051,6 +1051,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 #define NEAREST (sizeof(real) < sizeof(double) ? 1e-5 : 1e-9)
 #define FARTHEST (sizeof(real) < sizeof(double) ? 1e-4 : 1e-8)
 #define FARTHER 1.6
+#define ROUND_OFF_IN_IT 8.0 /* how often a fourth difference has that of a single value */
 #define MUCH_NOISE 100.0
 /* A relative bound, but not below the round-off of sums over nodes. */
 #define ABOVE_NOISE(part) ((part) > MUCH_NOISE * NOISE ? (part) : MUCH_NOISE * NOISE)
@@ -1126,23 +1127,30 @@ static void MODEL(integrands_aside)(const MODEL(block) *m, double fraction, real
  * The round-off of integrands. One that tends to zero as a difference of larger terms, such as a length
  * and a rest length, ends as their round-off. How large these are shows when the states are moved; or,
  * where they have nothing to do with the states' scales, as in (1 + q/g)**n - 1 for q far below g, in the
- * second difference of three points so near to each other that it is nothing else.
+ * fourth difference of five points so near to each other that it is nothing else, even in a steep law.
  */
 static void MODEL(find_noise)(const MODEL(block) *m, real *noise)
 {
-    real *const first = m->node, *const second = first + m->means, *const third = second + m->means;
+    real *const first = m->node, *const second = first + m->means;
     MODEL(integrands)(m->x, &m->p, first);
     MODEL(integrands_aside)(m, ASIDE, second);
     for (long k = 0; k < m->means; ++k) {
         const real change = size_of(second[k] - first[k]);
         noise[k] = chosen(change < 1e300, (NOISE / ASIDE) * change, zero);
     }
+    static const double binomial[] = {1.0, -4.0, 6.0, -4.0, 1.0};
     for (double apart = NEAREST; apart < FARTHEST; apart *= FARTHER) {
-        MODEL(integrands_aside)(m, apart, second);
-        MODEL(integrands_aside)(m, 2.0 * apart, third);
+        real *const sum = second + m->means;
+        for (long k = 0; k < m->means; ++k)
+            sum[k] = first[k];
+        for (int point = 1; point < 5; ++point) {
+            MODEL(integrands_aside)(m, point * apart, second);
+            for (long k = 0; k < m->means; ++k)
+                sum[k] += binomial[point] * second[k];
+        }
         for (long k = 0; k < m->means; ++k) {
-            const real bend = size_of(first[k] - 2.0 * second[k] + third[k]);
-            noise[k] = largest_of(noise[k], chosen(bend < 1e300, bend, zero));
+            const real left = size_of(sum[k]) / ROUND_OFF_IN_IT;
+            noise[k] = largest_of(noise[k], chosen(left < 1e300, left, zero));
         }
     }
 }
