@@ -75,13 +75,13 @@ def report_and_files(model: Model) -> tuple[Report, Mapping[str, str]]:
     if (files := kept_files(model.key)) and PROOFS.format(model.name) in files:
         return report_of(files[PROOFS.format(model.name)]), files
     report, template = report_and_texts(model)
-    return report, files_of(model, report, template)
+    return report, keep(model, report, template)
 
 
 def report_and_texts(
     model: Model, meanwhile: Callable[[Template], AbstractContextManager[None]] | None = None
 ) -> tuple[Report, Template | None]:
-    """Return the verdicts on a model, and its texts with them; both are kept if it is proved.
+    """Return the verdicts on a model, and its texts with them.
 
     Without a template if the time was too short for its texts.
 
@@ -95,13 +95,17 @@ def report_and_texts(
             template = _with_standalone_step(found.template(), model.name)
         with meanwhile(template) if template and meanwhile else nullcontext():
             report = found.report()
-    if template:
-        template = replace(template, verdict=verdict_line(report))
-        if report.proved and report.sources == own_sources():
-            keep_template(shape_hash(model.flatten().model_dump()), template)
-            if report.decided:
-                keep_files(model.key, files_of(model, report, template))
-    return report, template
+    return report, template and replace(template, verdict=verdict_line(report))
+
+
+def keep(model: Model, report: Report, template: Template | None) -> dict[str, str]:
+    """Return the text of each generated file of a model; they are kept if it is proved."""
+    files = files_of(model, report, template)
+    if template and report.proved and report.sources == own_sources():
+        keep_template(shape_hash(model.flatten().model_dump()), template)
+        if report.decided:
+            keep_files(model.key, files)
+    return files
 
 
 def _with_standalone_step(made: Template, name: str) -> Template:

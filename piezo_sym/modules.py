@@ -179,7 +179,7 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
         derive(model)  # values may contradict each other where others do not
         return cache_module(model.name, model.sha256, found.filled(data))
 
-    from piezo_sym.build import report_and_texts
+    from piezo_sym.build import keep, report_and_texts
 
     def meanwhile(template: Template) -> AbstractContextManager[None]:
         return _compiling_ahead(model.name, shape, template.filled(data), stages)
@@ -194,6 +194,7 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
         error.remedy += f"; or `{command}` writes it all the same, for a run"
         raise
     assert found is not None  # a report that proves a module has its texts
+    keep(model, report, found)
     return cache_module(model.name, model.sha256, found.filled(data))
 
 

@@ -10,7 +10,7 @@ the motion would lose these functions to round-off.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, final
 
@@ -28,9 +28,7 @@ GROWTH = 4.0  # of the Euler step
 CONTRACTION = 0.25  # the largest second Newton move of an Euler step, over the first
 AT_REST = 1e-9  # a move at rest, over the states' sizes
 ROUND_OFF = 1e-13
-AT_LIMIT = (
-    1.0 + 1e-15
-)  # the effort of a stop that yields, over its limit: not below it by round-off
+AT_LIMIT = 1.0 + 1e-15  # of a stop that yields: its effort over its limit, despite round-off
 COUNTS = 1e-6  # the least relative change of a body's temperature that counts as a motion
 UNDETERMINED = 1e-6  # components of a unit vector below this are round-off
 SINGULAR = 1e-10  # over the greatest singular value of the scaled Jacobian
@@ -103,33 +101,32 @@ class RestSearch:
 
     def _to_limit(self, x: FloatArray, ahead: FloatArray) -> float:
         """Return the fraction of the way to `ahead` at which a stop meets its limit, or 1."""
-        first, last = (
-            by_name(self.module.ELEMENTS, self.parameters, self._elements(at)) for at in (x, ahead)
-        )
         meets = 1.0
-        for stop in self.stops:
-            limit = first[f"{stop}{LIMIT}"] * AT_LIMIT
-            before, after = np.abs(first[f"{stop}.effort"]), np.abs(last[f"{stop}.effort"])
+        for (_, before, limit), (_, after, _) in zip(
+            self._efforts(x), self._efforts(ahead), strict=True
+        ):
             beyond = (after > limit) & (before < limit)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                parts = np.where(beyond, (limit - before) / (after - before), 1.0)
+            rise = np.where(beyond, after - before, 1.0)
+            parts = np.where(beyond, (limit - before) / rise, 1.0)
             meets = min(meets, float(np.min(parts, initial=1.0)))
         return meets
 
     def limited(self, x: FloatArray) -> FloatArray:
         """Return x with stops that a long step has moved beyond their limits moved back to them."""
-        for stop, rows in self.stops.items():
-            values = by_name(self.module.ELEMENTS, self.parameters, self._elements(x))
-            effort, limit = np.abs(values[f"{stop}.effort"]), values[f"{stop}{LIMIT}"] * AT_LIMIT
-            with np.errstate(divide="ignore", invalid="ignore"):
-                part = np.where(effort > limit, limit / effort, 1.0)
-            x = x.copy()
-            x[rows] *= part
+        x = x.copy()
+        for rows, effort, limit in [*self._efforts(x)]:
+            beyond = effort > limit
+            x[rows] *= np.where(beyond, limit / np.where(beyond, effort, 1.0), 1.0)
         return x
 
-    def _elements(self, x: FloatArray) -> FloatArray:
-        with np.errstate(all="ignore"):
-            return np.asarray(self.module.elements(x, self.u, self.parameters))
+    def _efforts(self, x: FloatArray) -> Iterator[tuple[slice, FloatArray, FloatArray]]:
+        """Yield the rows of each stop, the magnitudes of its efforts, and at which they yield."""
+        if self.stops:
+            with np.errstate(all="ignore"):
+                values = self.module.elements(x, self.u, self.parameters)
+            by = by_name(self.module.ELEMENTS, self.parameters, values)
+            for stop, rows in self.stops.items():
+                yield rows, np.abs(by[f"{stop}.effort"]), by[f"{stop}{LIMIT}"] * AT_LIMIT
 
     def find(self, start: FloatArray) -> tuple[RestSearch, FloatArray, FloatArray]:
         """Return the search with the fewest coordinates, the state at rest, and coordinates' sizes.

@@ -59,10 +59,9 @@ def domain_conditions(
     found = _conditions(broken, iphs, questions[0], fails)
     if not all(map(names, found)) or _no_point_satisfies(found, questions[0], fails):
         return _falling(failed, points)
-    if said := turning(found, iphs):
+    said = turning(found, iphs)
+    if said or not mended(found):
         return said
-    if not mended(found):
-        return ""
     # leave out conditions that the others imply, long ones first
     for claim in sorted(found, key=lambda claim: -len(found[claim])):
         rest = tuple(c for c in found if c != claim)
