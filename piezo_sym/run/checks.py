@@ -25,9 +25,9 @@ MOST = 100_000_000
 
 
 def is_number(value: object) -> bool:
-    """Return whether `value` is one real number; a bool is not."""
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        return value.dtype.kind in "iuf"
+    """Return whether `value` is one real number, or an array of one without axes; a bool is not."""
+    if getattr(value, "ndim", None) == 0:
+        return np.asarray(value).dtype.kind in "iuf"
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
 
 
@@ -56,6 +56,7 @@ def positive(value: object, where: str) -> float:
 
 def integer(value: object, where: str, least: int, most: int = MOST) -> int:
     """Return `value` as an int from `least` to `most`; raise `UsageError` otherwise."""
+    value = np.asarray(value).item() if getattr(value, "ndim", None) == 0 else value
     if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
         what = f"{quote(value)} is not allowed"
         raise UsageError(what, where, f"a whole number >= {least}")

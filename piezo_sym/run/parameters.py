@@ -175,18 +175,15 @@ def start_of(
         point = getattr(run, "parameters", None)  # of an OperatingPoint
         return start or 0.0, run, {**point, **(parameters or {})} if point else parameters
     model, sha256 = (str(run.attrs.get(key, "")) for key in ("model", "spec_sha256"))
-    if "time" not in run.dims or not model:
+    if "time" not in run.coords or not run.time.size or not model:
         raise UsageError("this Dataset is no run of simulate()", WHERE)
     if (model, sha256) != (module.NAME, module.SPEC_SHA256):
         what = f"this is a run of model {quote(model)}, spec {sha256[:12]}"
         expected = f"one of model '{module.NAME}', spec {module.SPEC_SHA256[:12]}"
         remedy = "give the run's own spec, and what has changed as parameters (--set)"
         raise UsageError(what, WHERE, expected, remedy if model == module.NAME else "")
-    last = run.isel(time=-1)
-    state: dict[str, Any] = {}
-    for record in module.STATES:
-        values = np.asarray(last[record.name].values, dtype=float)
-        state[record.name] = values if record.bank else float(values)
+    last = run.isel(time=-1) if run.time.ndim else run  # of one instant
+    state: dict[str, Any] = {record.name: last[record.name].values for record in module.STATES}
     used: dict[str, Any] = {}
     for name, value in run.attrs.items():
         if str(name).startswith(PARAMETER):

@@ -110,8 +110,8 @@ def simulate(
         body's temperature may stand for its entropy: {"T_body": 320.0}. Those left out keep the
         module's initial state. Stores that are joined have one state, the sum of theirs, with the
         ratios of what is between them: `show` says which. Or a Dataset
-        of this model: the run goes on from its last state, with its parameters but for those
-        given; integrals begin at 0 again.
+        of this model, or an instant of one, ``run.isel(time=-1)``: the run goes on from its last
+        state, with its parameters but for those given; integrals begin at 0 again.
     t0 : the time at which the run starts [s]; when left out, 0, or the last time of a Dataset.
     method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot

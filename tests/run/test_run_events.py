@@ -119,6 +119,18 @@ def test_a_run_goes_on_where_another_ended(options, tmp_path):
     assert (changed.attrs["parameter_d"], changed.time[0]) == (1.0, 0.0)
 
 
+def test_an_instant_of_a_run_is_a_start():
+    given = {"inputs": DRIVE, "parameters": {"d": 300.0, "L": [1e-3, 2e-3]}}
+    first = simulate("piezo_stack", duration=0.01, **given)
+    goes_on = {"duration": 0.01, "inputs": DRIVE}
+    whole = simulate("piezo_stack", initial=first, **goes_on)
+    end = simulate("piezo_stack", initial=first.isel(time=-1), progress=True, **goes_on)
+    assert end.identical(whole)  # to the bit, with its parameters
+    middle = simulate("piezo_stack", initial=first.isel(time=500), **goes_on)
+    assert middle.time[0] == first.time[500]
+    assert np.array_equal(middle.phi[0], first.phi[500])
+
+
 @pytest.mark.filterwarnings("ignore:.generated/piezo_stack. is not what")
 def test_a_run_of_another_model_is_refused():
     other = simulate(OSCILLATOR, duration=1.0)
@@ -128,8 +140,11 @@ def test_a_run_of_another_model_is_refused():
     run = simulate("piezo_stack", duration=1e-3)
     with pytest.raises(UsageError, match="expected one of model 'piezo_stack', spec"):
         simulate(load_text(changed), duration=1e-3, initial=run)
-    with pytest.raises(UsageError, match="no run of simulate"):
-        simulate("piezo_stack", duration=1e-3, initial=xarray.Dataset())
+    with pytest.raises(UsageError, match="expected one of model 'piezo_stack', spec"):
+        simulate(load_text(changed), duration=1e-3, initial=run.isel(time=-1))
+    for none in (xarray.Dataset(), run.isel(time=[]), run.drop_vars("time")):
+        with pytest.raises(UsageError, match="no run of simulate"):
+            simulate("piezo_stack", duration=1e-3, initial=none)
 
 
 def load_text(text: str):

@@ -4,6 +4,7 @@ from math import inf, nan
 
 import numpy as np
 import pytest
+import xarray
 
 import piezo_sym
 from piezo_sym import samples, sweep
@@ -137,6 +138,26 @@ def test_numbers_of_numpy_are_numbers(piezo):
     assert ds.attrs["parameter_hysteron_count"] == 3
     assert np.array_equal(ds.V_in, [2, 2, 2])
     assert np.array_equal(ds.F_ext, [3, 3, 3])
+
+
+def test_numbers_of_a_run_are_numbers():
+    """As 0-d DataArrays, which indexing gives: in all arguments of all functions."""
+    run = piezo_sym.simulate("piezo_stack", inputs={"V_in": 100.0}, duration=1e-3, times=2)
+    point = {"inputs": {"V_in": run.V_in[-1]}, "parameters": {"d": xarray.DataArray(300.0)}}
+    point["parameters"]["hysteron_count"] = xarray.DataArray(3)
+    start = {"q": run.q[-1], "T_body": run.T_body[-1]}
+    given = {"initial": start, "duration": run.time[-1], "times": 2}
+    again = piezo_sym.simulate("piezo_stack", **point, **given)
+    assert again.V_in[0] == 100.0
+    assert again.attrs["parameter_d"] == 300.0
+    assert again.sizes["hysteron"] == 3
+    assert again.q[0] == run.q[-1]
+    assert again.T_body[0] == pytest.approx(float(run.T_body[-1]), rel=1e-15)
+    assert piezo_sym.operating_point("piezo_stack", **point).inputs["V_in"] == 100.0
+    assert piezo_sym.Stepper("piezo_stack", step=1e-5, initial=start, **point).x[0] == run.q[-1]
+    wrong = {"inputs": {"V_in": xarray.DataArray(True)}}
+    with pytest.raises(UsageError, match=r"simulate.inputs.V_in"):
+        piezo_sym.simulate("piezo_stack", duration=1e-3, **wrong)
 
 
 @pytest.mark.parametrize(
