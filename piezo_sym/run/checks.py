@@ -18,6 +18,7 @@ from piezo_sym.errors import PiezoError, UnknownNameError, UsageError, nearest, 
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
+BOOLS = frozenset({bool, np.bool_})
 #: The smallest duration, temperature or frequency: fractions of a smaller one underflow.
 LEAST = 1e-100
 #: The most lanes or samples: the results of more fit into no memory.
@@ -28,7 +29,7 @@ def is_number(value: object) -> bool:
     """Return whether `value` is one real number, or an array of one without axes; a bool is not."""
     if getattr(value, "ndim", None) == 0:
         return np.asarray(value).dtype.kind in "iuf"
-    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
+    return isinstance(value, Real) and type(value) not in BOOLS
 
 
 def number(value: object, where: str) -> float:
