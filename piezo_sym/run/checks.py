@@ -18,6 +18,7 @@ from piezo_sym.errors import PiezoError, UnknownNameError, UsageError, nearest, 
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
+#: The types of truth values, which Python and NumPy take for numbers.
 BOOLS = frozenset({bool, np.bool_})
 #: The smallest duration, temperature or frequency: fractions of a smaller one underflow.
 LEAST = 1e-100

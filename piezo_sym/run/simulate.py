@@ -121,7 +121,8 @@ def simulate(
     events : name -> expression, such as ``{"hit": "q - 1e-3"}``: the times at which it changes its
         sign, to round-off, are the coordinate of that name, and `<quantity>_at_<name>` are the
         states, inputs, outputs and temperatures there. Expressions are texts in the language of
-        laws, of states (a lane as ``phi_1``), inputs, `y_<port>`, `T_<body>` and parameters, in SI.
+        laws, of states (a lane as ``phi_1``), inputs, `y_<port>`, `T_<body>`, parameters and what
+        `outputs` names (of a bank ``hysteron.effort_1``), in SI.
         They are evaluated at the samples and four times per step, 1,000 to 20,000 times in all: two
         changes between neighbouring times are not seen. Not with `step`.
     stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, with a sample
