@@ -20,6 +20,8 @@ FloatArray: TypeAlias = NDArray[np.float64]
 
 #: The types of truth values, which Python and NumPy take for numbers.
 BOOLS = frozenset({bool, np.bool_})
+#: The functions whose checks others share.
+SHARED = re.compile(r"^(simulate|operating_point|periodic_steady_state)\.")
 #: The smallest duration, temperature or frequency: fractions of a smaller one underflow.
 LEAST = 1e-100
 #: The most lanes or samples: the results of more fit into no memory.
@@ -130,10 +132,15 @@ def known_keys(
 
 
 @contextmanager
-def calling(function: str) -> Iterator[None]:
-    """Make errors of shared checks name `function`, which the user called; also a decorator."""
+def calling(function: str, initial: str = "initial") -> Iterator[None]:
+    """Make errors of shared checks name `function`, which the user called; also a decorator.
+
+    `initial` is the name of its argument for a state.
+    """
     try:
         yield
     except PiezoError as error:
-        error.where = re.sub(r"^(simulate|operating_point)\.", f"{function}.", error.where)
+        error.where = SHARED.sub(f"{function}.", error.where)
+        error.where = error.where.replace(f"{function}.initial", f"{function}.{initial}")
+        error.remedy = error.remedy.replace("'initial'", f"'{initial}'")
         raise

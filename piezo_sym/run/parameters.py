@@ -89,6 +89,10 @@ def read_initial(
 ) -> FloatArray:
     """Return the state (n,) at t = 0, with inputs u (m,): the default, changed where given."""
     given = getattr(given, "initial", given)  # of an OperatingPoint
+    if hasattr(given, "data_vars"):
+        states = [record.name for record in module.STATES]
+        remedy = f"give {{name: run[name][-1] for name in {states}}}"
+        raise UsageError("a Dataset is no state", WHERE, "state -> value", remedy)
     if isinstance(given, Mapping):
         _refuse_single_lanes(module, parameters, given)
     names, places = [record.name for record in module.STATES], names_elsewhere(module, "initial")
