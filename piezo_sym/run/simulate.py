@@ -27,7 +27,7 @@ from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, checked
 from piezo_sym.run.parameters import LaneValue, read_parameters, sample_times, start_of
 from piezo_sym.run.planned import Request
-from piezo_sym.run.streaming import streamed
+from piezo_sym.run.streaming import check_memory, streamed
 
 if TYPE_CHECKING:
     import xarray
@@ -184,6 +184,7 @@ def simulate(
     request = Request(module, values, inputs, chosen, tolerance, fixed, *options)
     if store is not None:
         return streamed(request, start, samples, state, (events, stop), store)
+    check_memory(request, samples)
     planned = request.planned(start, length, state)
     return planned.dataset(samples, read_watched(planned.system, events, stop, step))
 

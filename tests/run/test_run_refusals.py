@@ -1,5 +1,6 @@
 """Calls of `simulate` that are wrong: each is refused with a line that names the place."""
 
+import re
 from math import inf, nan
 
 import numpy as np
@@ -179,6 +180,20 @@ def test_sizes_beyond_any_memory_are_refused(options, said):
         with pytest.raises(UsageError) as error:
             run("piezo_stack", duration=1e-3, **options)
         assert said in str(error.value)
+
+
+def test_a_run_too_large_for_the_memory_is_told_to_take_a_store():
+    """How large a sample is, is counted."""
+    few = piezo_sym.simulate("piezo_stack", duration=1e-3, times=1000, outputs="all")
+    size = few.nbytes / 1000
+    with pytest.raises(UsageError) as error:
+        piezo_sym.simulate("piezo_stack", duration=1e-3, times=10**8, outputs="all")
+    said = str(error.value)
+    assert "simulate.times: a run of 100,000,000 samples takes" in said
+    assert "store='run.zarr' (--out run.zarr)" in said
+    assert float(re.search(r"takes (\d+) GB", said)[1]) == pytest.approx(size / 10, rel=0.1)
+    most = int(re.search(r"at most ([\d,]+) in memory", said)[1].replace(",", ""))
+    assert most * size == pytest.approx(8e9, rel=0.1)
 
 
 def test_a_hundred_thousand_hysterons_run():
