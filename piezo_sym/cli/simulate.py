@@ -96,6 +96,7 @@ def simulate(
     signals = dict(pairs(inputs or (), "--input", units.signal))
     span = {"duration": duration, "t0": t0, "times": times, "stop": stop}
     solver = {"rtol": rtol, "step": step, "order": order, "method": method, "outputs": outputs}
+    folders = [out.parent] if out is not None and not out.parent.exists() else []
     result = _run(
         spec,
         out,
@@ -107,7 +108,8 @@ def simulate(
         **span,
         **solver,
     )
-    _report(result, [*units.assumed, *_assumed(signals)], out)
+    made = (f"made the folder {path_text(folder)}" for folder in folders)
+    _report(result, [*units.assumed, *_assumed(signals), *made], out)
 
 
 def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
