@@ -177,8 +177,7 @@ def simulate(
     start, state, given = start_of(module, t0, initial, parameters)
     check_resolved(start, length)
     samples = sample_times(times, step, length, start)
-    values = read_parameters(module, given)
-    chosen = choose_method(module, named, step)
+    values, chosen = read_parameters(module, given), choose_method(module, named, step)
     elements, slack = read_outputs(module, outputs), slack_of(initial, parameters)
     options = dissipative_start, progress, elements, slack
     request = Request(module, values, inputs, chosen, tolerance, fixed, *options)
