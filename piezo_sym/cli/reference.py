@@ -13,6 +13,11 @@ WIDTH = 100
 #: The source of the numbers of equations and assumptions.
 PAPER = "Numbered equations and assumptions: Caballeria, Ramirez, Le Gorrec (2021)."
 NUMBERED = re.compile(r"\beqs?\. \(|Assumption")
+CELLS = """[banks.creep]
+count = 3                   # cells; a parameter that is a list has a value for each
+[banks.creep.elements]      # of one cell; nodes that stand in no other table are its own
+slow = { kind = "spring", between = ["tip", "middle"], stiffness = "k" }
+loss = { kind = "damper", between = ["middle", "wall"], force = "d*v", heats = "body" }"""
 OPERATORS = (
     ("+ - * /", "as usual", "R*(1 + al*(T - T_0))"),
     ("**", "a power, by a whole number or a small fraction", "d*v**3"),
@@ -39,6 +44,7 @@ def kinds(
     docs = {name: known[element.__name__]["description"] for name, element in KINDS.items()}
     rows = ((name, doc.partition("\n")[0]) for name, doc in docs.items())
     print_table(title, ("kind", "what it is"), rows)
+    typer.echo(f"Several alike, in parallel: count = 3 in an element. Cells of several:\n\n{CELLS}")
 
 
 def _meant(kind: str) -> str:

@@ -6,14 +6,15 @@ Numbers are taken from the source text as exact rationals.  Nothing is evaluated
 """
 
 import ast
+import json
 import re
 from collections.abc import Container
 from fractions import Fraction
 from functools import cache
 
-from piezo_sym.errors import nearest, quote
+from piezo_sym.errors import listing, nearest, quote
 from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
-from piezo_sym.expressions.incomplete import incomplete, with_a_point
+from piezo_sym.expressions.incomplete import conditions_of, incomplete, with_a_point
 from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Pow, Sym, names
 
 LANGUAGE = "numbers, names, + - * / **, (), 'a if x < y else b', or a function as in exp(x)"
@@ -23,7 +24,7 @@ REMEDIES = {
     "=": "write >= or <= in a condition",
     ".": "write a function by its name alone, as in tanh(v)",
     "|": "write abs(v)",
-    "&": "write each condition as one of its own",
+    "'": "leave it out: there is no transpose, and a rate is a letter or a state, such as v",
 }
 #: Elementwise operators of other languages.
 DOTTED = {".*": "*", "./": "/", ".^": "**"}
@@ -126,9 +127,13 @@ def read_law(text: str) -> Expr:
 
 def read_condition(text: str) -> Cmp:
     """Return the tree of one comparison."""
+    check_characters(text)
+    if len(several := conditions_of(text)) > 1:
+        remedy = f"write each condition as one of its own: {listing(map(json.dumps, several))}"
+        raise RefusedError("is not one comparison", remedy=remedy)
     body = _parsed(text)
     if not isinstance(body, ast.Compare):
-        remedy = "write each condition as one of its own" * isinstance(body, ast.BoolOp)
+        remedy = "write 'max(a, b) > 0' for 'a > 0 or b > 0'" * isinstance(body, ast.BoolOp)
         raise RefusedError("is not a comparison", "one of < <= > >=, as in 'T > T_0'", remedy)
     return _comparison(body, text)
 
@@ -228,7 +233,9 @@ LETTERS = frozenset({"i", "v", "f", "T"})
 
 def _power(base: Expr, exponent: Expr) -> Expr:
     if LETTERS & {*names(exponent)}:
-        raise RefusedError("has a power that is not a number", "a small number, as in v**2")
+        exponential = "write exp(x) for e**x" * (base == Sym("e"))
+        what = "has a power that is not a number"
+        raise RefusedError(what, "a small number, as in v**2", exponential)
     if names(exponent) and not isinstance(exponent, Neg) and may_vanish(base):
         return Call("pow", (base, exponent))
     if names(exponent):  # the base is positive; log refuses one that has a unit

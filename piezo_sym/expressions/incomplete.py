@@ -9,6 +9,16 @@ NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 #: The keywords of Python that a law may have, or that are no one's names.
 NO_NAMES = frozenset({"if", "else", "and", "or", "not", "True", "False", "None"})
 KEYWORDS = frozenset(kwlist) - NO_NAMES
+#: What to write for names of constants, of which laws know none.
+CONSTANTS = {
+    **dict.fromkeys(("pi", "Pi", "PI", "M_PI"), "constants are numbers: write 3.141592653589793"),
+    "e": "constants are numbers: write exp(x) for e**x, and exp(1) for e",
+    "inf": "a law is of finite numbers: leave out the limit that is none",
+    "eps": "declare it in [parameters] with a small value and its unit",
+}
+#: Words that join comparisons, which the language of laws does not have, and those of C.
+AND, OR = re.compile(r"\band\b|&&?"), re.compile(r"\bor\b|\|\|?")
+CHAIN = re.compile(r"([^<>]+)([<>]=?)([^<>]+)([<>]=?[^<>]+)")
 WITH_A_COMMA = re.compile(r"(?<![\w.,])\d+,\d+(?![\d.,])")
 
 
@@ -37,6 +47,21 @@ def _bracket(text: str) -> str:
         elif character == ")":
             opened.pop()
     return f"close the bracket that opens at column {opened[-1]}" if opened else ""
+
+
+def conditions_of(text: str) -> list[str]:
+    """Return the conditions in a text that joins several: by a word, a sign, or as in 0 < a < b."""
+    found = list[str]()
+    for part in re.split(rf"{AND.pattern}|;|,(?![^(]*\))", text):
+        bare = re.sub(r"^\(([^()]*)\)$", r"\1", part.strip())
+        if chain := CHAIN.fullmatch(bare):
+            low, sign, middle, rest = (piece.strip() for piece in chain.groups())
+            found += [f"{low} {sign} {middle}", f"{middle} {rest}"]
+        elif not re.search("[<>]", bare):  # a comma between arguments
+            return [text]
+        else:
+            found.append(bare)
+    return [text] if OR.search(text) else found
 
 
 def with_a_point(text: str) -> str:

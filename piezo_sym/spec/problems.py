@@ -5,6 +5,7 @@ dotted path, what was expected there and, for unknown words, the nearest known o
 lines of the same kind, its notes, as there are other faults.
 """
 
+import json
 from collections.abc import Iterable, Mapping
 from typing import Any, get_args
 
@@ -12,12 +13,16 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from piezo_sym.errors import SpecError, listing, nearest, quote, similar
+from piezo_sym.expressions.incomplete import conditions_of
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.fields import Tables
 
 ENTRIES = {  # what to write for an entry of a table
     "parameters": '{{ value = {value}, unit = "N/m" }}, with its own unit; "1" is none',
     "inputs": '{{ unit = "V" }}, with its own unit',
+    "banks": "a table: [{where}] with count = 3, and below [{where}.elements] those of one cell",
+    "elements": "a table: below [{where}] the lines of its elements, which stand there alone, such "
+    'as {name} = {{ kind = "spring", between = ["tip", "wall"], stiffness = "k" }}',
 }
 NEEDED = {  # examples of keys whose name alone does not say what to write
     "unit": 'unit = "N/m", say; unit = "1" where there is none',
@@ -113,8 +118,9 @@ def _problem(detail: ErrorDetails) -> SpecError:
             return SpecError(f"{quote(value)} is not a label", where, expected)
         case "value_error" if isinstance(value, Mapping):
             return SpecError("its fields do not go together", where, _expected(detail))
-        case "model_type" | "dict_type" if place[0] in ENTRIES and len(place) == 2:
-            expected = ENTRIES[place[0]].format(value=_number(value))
+        case "model_type" | "dict_type" if (table := place[len(place) > 2 and -1]) in ENTRIES:
+            name = value[0] if isinstance(value, list) and value else "spring"
+            expected = ENTRIES[table].format(value=_number(value), where=where, name=name)
             return SpecError(f"{quote(value)} does not fit", where, expected)
     return SpecError(f"{quote(value)} does not fit", where, _expected(detail))
 
@@ -131,7 +137,9 @@ def _number(value: object) -> str:
 
 def _expected(detail: ErrorDetails) -> str:
     if detail["type"] == "tuple_type" and detail["loc"][-1] == "assume":
-        return f'a list of conditions, such as ["{detail["input"]}"]'
+        given = detail["input"]
+        parts = conditions_of(given) if isinstance(given, str) else ["d >= 0"]
+        return f"a list of conditions, such as {json.dumps(parts)}"
     number = detail["type"] == "string_type" and isinstance(detail["input"], int | float)
     if number and "elements" in detail["loc"]:
         key, value = detail["loc"][-1], detail["input"]

@@ -12,7 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from piezo_sym.errors import FileError, SpecError, UsageError, listing, nearest, quote
+from piezo_sym.files import near_file
 from piezo_sym.spec.names import NAME
+from piezo_sym.spec.syntax import remedy_at
 
 MAX_BYTES = 500_000
 MAX_NESTING = 20
@@ -77,6 +79,8 @@ def component_file(given: object, where: str, folder: Path | None) -> Path:
         raise SpecError(f"{quote(given)} leads out of the spec's folder", where, expected, remedy)
     if not os.path.isfile(path):
         known = nearest(given, shipped()).replace("known", "shipped")
+        near = near_file(path.with_suffix(".toml")) if len(relative.parts) == 1 else ""
+        known = near if near.startswith("did you mean") else known
         raise SpecError(f"{quote(given)} is no file there, and not shipped", where, expected, known)
     return path
 
@@ -122,10 +126,11 @@ def data(text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-        if twice := _given_twice(text, str(error)):
+        fault = str(error)
+        if twice := _given_twice(text, fault):
             raise SpecError(twice, remedy="rename one of the two, or leave it out") from None
-        what = f"is not TOML: {str(error)[:200]}"
-        raise SpecError(what, remedy="mend the syntax there") from None
+        remedy = remedy_at(text, fault) or "mend the syntax there"
+        raise SpecError(f"is not TOML: {fault[:200]}", remedy=remedy) from None
 
 
 def _given_twice(text: str, fault: str) -> str:

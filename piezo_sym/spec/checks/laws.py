@@ -2,10 +2,12 @@
 
 from collections import ChainMap
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
+from piezo_sym.expressions.incomplete import CONSTANTS
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.tree import Node, names
+from piezo_sym.expressions.tree import Mul, Node, Num, Sym, names, walk
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS, LETTERS
 from piezo_sym.spec.elements.base import Element, state_symbol
@@ -82,8 +84,9 @@ def _unknown_reference(
 
 #: The parameters of a body's usual law.
 WARM = {"T_0": '{ value = 300, unit = "K" }', "c_0": '{ value = 100, unit = "J/K" }'}
-#: Names for time, which enters through inputs only.
-TIME = ("t", "time")
+DRIVEN = "time enters through an input: declare one, and give the run sine(...) for it"
+#: What to write for names that laws do not know in any spec.
+WRITTEN = CONSTANTS | dict.fromkeys(("t", "time"), DRIVEN)
 
 
 def check_laws(spec: Tables) -> None:
@@ -186,10 +189,10 @@ def _check_words(
             continue
         remedy = _state_in_law(spec, word, letters, element)
         if word in LETTERS:
-            expected = "parameters"
-            if {*seen(spec)} <= {*words}:
+            expected = f"the letters {listing(letters)}, parameters" if letters else "parameters"
+            if (sight := {*seen(spec)}) <= {*words}:
                 expected += f"{'' if element else ', inputs'}, states and temperatures"
-            expected = f"the letters {listing(letters)}" if letters else expected
+                expected += f": {listing(seen(spec))}" * bool(letters and sight)
             if not remedy:
                 known = {*words, *states(spec)} if element else words
                 remedy = _states_of_letter(spec, word, known)
@@ -199,13 +202,19 @@ def _check_words(
             raise SpecError(
                 what, where, "parameters", "drive it through a source, or take a parameter"
             )
-        near = nearest(word, [*letters, *words])
-        if word in TIME:
-            near = "time enters through an input: declare one, and give the run sine(...) for it"
-        elif not near.startswith("did you mean"):
-            near = f"declare it in [parameters] with its value and unit; {near}"
-        remedy = remedy or near
+        remedy = remedy or WRITTEN.get(word) or _declared(word, tree, [*letters, *words])
         raise SpecError(f"unknown name {quote(word)}", where, remedy=remedy)
+
+
+def _declared(word: str, tree: Node, known: Collection[str]) -> str:
+    """Return what to do about a name that nothing declares: a unit, behind a number, has none."""
+    near, declare = nearest(word, known), "declare it in [parameters] with its value and unit"
+    products = (node for node in walk(tree) if isinstance(node, Mul) and node.right == Sym(word))
+    if any(isinstance(product.left, Num) for product in products):
+        with suppress(SpecError):
+            in_si = str(parse_unit(word).factor)
+            return f"{declare}; or, if the unit is meant, write {in_si} for it: laws are in SI"
+    return near if near.startswith("did you mean") else f"{declare}; {near}"
 
 
 def _state_in_law(spec: Tables, word: str, letters: tuple[str, ...], element: str) -> str:
