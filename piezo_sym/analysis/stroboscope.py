@@ -34,6 +34,7 @@ from piezo_sym.run.parameters import (
     entropy_row,
     read_initial,
     read_parameters,
+    refuse_run,
     set_temperature,
 )
 from piezo_sym.run.system import DrivenModule
@@ -246,6 +247,7 @@ def stroboscope(
     refuse_unperiodic(module, inputs_at(frequency), frequency)
     inputs = read_inputs(module, inputs_at(frequency), 1 / frequency)
     steps = steps_needed(inputs, (record.name for record in module.INPUTS), steps)
+    refuse_run(module, initial)
     known_keys(initial, [record.name for record in module.STATES], "periodic_steady_state.initial")
     strobe = Stroboscope(module, inputs_at, frequency, parameters or {}, initial or {}, steps)
     strobe.run(strobe.start, times=2, step=strobe.duration / steps)

@@ -42,8 +42,9 @@ def warnings_as_lines() -> Iterator[None]:
     """
     from piezo_sym.modules import ModuleWarning
     from piezo_sym.run.engine import EngineWarning
+    from piezo_sym.run.inputs import InputWarning
 
-    kinds, of_modules = (EngineWarning, ModuleWarning), list[str]()
+    kinds, of_modules = (EngineWarning, InputWarning, ModuleWarning), list[str]()
 
     def shown(message: Warning | str, *others: Any, **named: Any) -> None:
         if isinstance(message, ModuleWarning):

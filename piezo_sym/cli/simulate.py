@@ -38,7 +38,7 @@ T0 = "When the run starts [s]; 0, or where it goes on."
 DURATION = "Length of the run [s], or with a unit: 20ms."
 STEP = "A fixed step [s] instead of --rtol."
 OUTPUTS = "Quantities of elements: all, or spring,damper.heat,..."
-CONTINUE = "Go on from the end of this run (.nc or .zarr)."
+CONTINUE = "Go on from the end of this run (.nc or .zarr); inputs are given anew."
 INITIAL = """STATE=NUMBER or T_<body>=KELVIN at t = 0; units as for --set; of joined
 stores one state, see show; repeat."""
 SIGNALS = "NAME=NUMBER, NAME=sine(100V,50Hz) or NAME=@FILE.csv; units as for --set; repeat."

@@ -21,6 +21,9 @@ CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)(?P<end>\)?)")
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 #: A number and its unit; the e of 1e3 is no unit.
 IN_UNIT = re.compile(rf"\s*({NUMBER})\s*(?![eE][-+]?\d)([^\W\d_].*)")
+#: A formula in place of a signal, and one that is a sine.
+FORMULA = re.compile(r"(?<![\w.])(?:sin|cos|exp)\(.*t|\*\s*t\b|\bpi\b")
+SINE = re.compile(rf"(?:({NUMBER})\*)?sin\(2\*pi\*(?:({NUMBER})\*)?t\)({NUMBER})?")
 #: The units of the numbers of signals; all others have that of the input.
 UNITS = {
     **dict.fromkeys(("frequency", "f_start", "f_stop"), "Hz"),
@@ -66,6 +69,11 @@ def signal(text: str, where: str, read: Callable[[str, str, str], float] | None 
     call = CALL.fullmatch(text)
     if text.endswith((".csv", ".txt")):
         raise UsageError(f"{quote(text)} is a file", where, f"@{text}")
+    if FORMULA.search(text):
+        sine = SINE.fullmatch(text.replace(" ", ""))
+        numbers = [sine[1] or "1", sine[2] or "1", *([sine[3]] if sine[3] else [])] if sine else []
+        remedy = f"write sine({', '.join(numbers)})" if sine else "or a table, @FILE.csv"
+        raise UsageError(f"{quote(text)} is a formula", where, spelled("sine"), remedy)
     if call is None:
         return value(text)
     name = call["name"]

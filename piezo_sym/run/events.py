@@ -18,6 +18,7 @@ import numpy as np
 
 from piezo_sym.errors import PiezoError, UsageError, nearest, quote
 from piezo_sym.expressions.exact_eval import evaluate
+from piezo_sym.expressions.incomplete import AND, CONSTANTS, OR
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Add, Call, Expr, Neg, names, rename
@@ -30,8 +31,6 @@ from piezo_sym.run.system import DrivenModule
 Sampler: TypeAlias = Callable[[FloatArray], tuple[FloatArray, Trajectory]]
 #: Samples to find changes of sign: per step, and the least and greatest number of them.
 PER_STEP, LEAST, MOST = 4, 1000, 20_000
-#: Words that join comparisons, which the language of laws does not have, and those of C.
-AND, OR = re.compile(r"\band\b|&&?"), re.compile(r"\bor\b|\|\|?")
 KNOWN = "a state, input, y_<port>, T_<body> or parameter"
 #: A quantity of an element, as `spring.effort`: no name of the language of laws.
 QUANTITY = re.compile(r"\b([A-Za-z_]\w*)\.([A-Za-z_]\w*)")
@@ -136,7 +135,8 @@ def _check_names(tree: Expr, words: Sequence[str], where: str) -> Expr:
         if name not in words:
             dotted = tuple(word for word in words if "." in word)
             own = (word for word in words if word not in dotted)
-            remedy = element_remedy(name, dotted) if "." in name else nearest(name, own)
+            remedy = element_remedy(name, dotted) if "." in name else ""
+            remedy = remedy or CONSTANTS.get(name) or nearest(name, own)
             what = f"events and stop know no {quote(name)}"
             expected = f"{KNOWN}, or a quantity of an element, such as '{dotted[0]}'"
             raise UsageError(what, where, expected, remedy)

@@ -17,7 +17,7 @@ from piezo_sym.run.inputs import Segment
 from piezo_sym.run.module import GeneratedModule, by_name, row_name, rows
 from piezo_sym.run.system import DrivenModule
 
-NAME = re.compile(r"[A-Za-z_]\w*")
+NAME = re.compile(r"[A-Za-z_]\w*\b(?!\()")  # of no function
 MOST_VALUES = 4
 #: Checks of inputs within their longest step; and the most numbers of states in all checks.
 CHECKS, MOST_NUMBERS = 4, 5_000_000
@@ -200,11 +200,16 @@ def depth(system: DrivenModule, text: str) -> int:
 
 
 def remedies(system: DrivenModule, text: str) -> list[str]:
-    """Return what a user can change to meet a condition."""
+    """Return what a user can change to meet a condition, first parameters that a run has set."""
     module, level, names = system.module, depth(system, text), set(NAME.findall(text))
     inputs = [f"input '{r.name}'" for r in module.INPUTS if r.name in names]
-    parameters = [f"parameter '{r.name}'" for r in module.PARAMETERS if r.name in names]
-    return [parameters, inputs, ["the inputs", "the parameters", "the initial state"]][level]
+    known = [r.name for r in module.PARAMETERS if r.name in names]
+    p, default = system.parameters, module.Parameters()
+    changed = [f"parameter '{n}'" for n in known if getattr(p, n) != getattr(default, n)]
+    others = [[f"parameter '{n}'" for n in known], inputs, ["the inputs", "the initial state"]]
+    if not changed:
+        return others[level] if level < 2 else ["the inputs", "the parameters", "the initial state"]
+    return changed + others[level] * (level > 0)
 
 
 def values_in(system: DrivenModule, text: str, x: FloatArray, u: FloatArray) -> list[Value]:

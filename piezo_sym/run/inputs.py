@@ -5,12 +5,13 @@ Input: a mapping of names to numbers, (t, values), functions or signals.  Output
 limit from the right, at its end the limit from the left.
 """
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, nextafter
-from typing import TypeAlias, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +24,11 @@ from piezo_sym.run.samples import Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal
 
 InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
+
+
+class InputWarning(UserWarning):
+    """An input that drove the run that goes on, and is left out: it has its default again."""
+
 
 CLOSE = 1e-12  # of the end time: breaks nearer than this are one
 LEAST_JUMP = 1e-6  # of an input's size nearby: smaller differences are round-off of a corner
@@ -170,6 +176,24 @@ def read_signal(value: object, where: str, span: tuple[float, float], unit: str)
     return signal
 
 
+def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
+    """Warn of inputs that are not given, if those of the run before differ from their defaults."""
+    if not hasattr(before, "data_vars"):
+        return
+    left = [
+        (r, default)
+        for r, default in zip(module.INPUTS, module.INPUT_DEFAULTS, strict=True)
+        if r.name not in (given if isinstance(given, Mapping) else ())
+        and np.any(before[r.name] != default)
+    ]
+    for record, default in left:
+        text = (
+            f"input '{record.name}' is not given, so it is {default:g} {record.unit}, its default"
+        )
+        text += ", from here on: the run that goes on had other values; give it again to keep it"
+        warnings.warn(text, InputWarning, stacklevel=5)
+
+
 def as_signal(value: object, where: str, start: float = 0.0) -> Signal:
     """Return a number, (t, values), function or signal as a signal of a run from `start` [s]."""
     if isinstance(value, Signal):
@@ -180,5 +204,5 @@ def as_signal(value: object, where: str, start: float = 0.0) -> Signal:
         return read_samples(value[0], value[1], where)
     if callable(value) and not isinstance(value, type):
         return InputFunction(value, where, start)
-    expected = "a number, (t, values), a function of t or a signal"
+    expected = "a number, (t, values), a function of t or a signal, such as sine(100.0, 50.0)"
     raise UsageError(f"{quote(value)} is no input", where, expected)

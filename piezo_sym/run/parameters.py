@@ -89,10 +89,7 @@ def read_initial(
 ) -> FloatArray:
     """Return the state (n,) at t = 0, with inputs u (m,): the default, changed where given."""
     given = getattr(given, "initial", given)  # of an OperatingPoint
-    if hasattr(given, "data_vars"):
-        states = [record.name for record in module.STATES]
-        remedy = f"give {{name: run[name][-1] for name in {states}}}"
-        raise UsageError("a Dataset is no state", WHERE, "state -> value", remedy)
+    refuse_run(module, given)
     if isinstance(given, Mapping):
         _refuse_single_lanes(module, parameters, given)
     names, places = [record.name for record in module.STATES], names_elsewhere(module, "initial")
@@ -110,6 +107,14 @@ def read_initial(
         if state in values:
             raise UsageError(f"{quote(state)} is given too", where, "one of them")
     return x
+
+
+def refuse_run(module: GeneratedModule, given: object) -> None:
+    """Raise `UsageError` for a Dataset where a state is needed."""
+    if hasattr(given, "data_vars"):
+        states = [record.name for record in module.STATES]
+        remedy = f"give {{name: run[name][-1] for name in {states}}}"
+        raise UsageError("a Dataset is no state", WHERE, "state -> value", remedy)
 
 
 def _refuse_single_lanes(module: GeneratedModule, parameters: Any, given: Iterable[str]) -> None:

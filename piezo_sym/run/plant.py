@@ -4,13 +4,15 @@ Input: a user's parameters, inputs and quanta; a driven module, its engine, its 
 the options of steps.  Output: the arguments checked; `Plant`, which owns the arrays that C uses.
 """
 
+from __future__ import annotations
+
 import ctypes
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeAlias, final
+from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
 
-from piezo_sym.errors import PiezoError, RunError, UsageError
+from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, known_keys, positive
 from piezo_sym.run.collocation import layout_of
 from piezo_sym.run.dataset import Evaluation, Trajectory
@@ -19,20 +21,30 @@ from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.records import POINTER, at, c_record
 from piezo_sym.run.guard import check_start, domain_error, input_conditions
 from piezo_sym.run.inputs import Inputs, read_inputs
-from piezo_sym.run.module import GeneratedModule, lanes, row_names
-from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
+from piezo_sym.run.module import GeneratedModule, heat_exchanges, lanes, row_names
+from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters, start_of
 from piezo_sym.run.signals import Constant
 from piezo_sym.run.system import DrivenModule
 
+if TYPE_CHECKING:
+    import xarray
+
 Given: TypeAlias = Mapping[str, LaneValue]
+Start: TypeAlias = "Given | xarray.Dataset"
 
 
-def read_plants(module: GeneratedModule, given: Given | Sequence[Given] | None) -> list[Any]:
-    """Return the parameters of each plant; raise `UsageError` if their states differ in number."""
+def read_plants(
+    module: GeneratedModule, given: Given | Sequence[Given] | None, initial: Start | None
+) -> tuple[list[Any], Given | None]:
+    """Return the parameters of each plant, and the state from which all start, of a run its last.
+
+    Raises `UsageError` if their states differ in number.
+    """
     each = given if isinstance(given, Sequence) else [given]
-    plants = [read_parameters(module, values) for values in each]
+    starts = [start_of(module, None, initial, values) for values in each]
+    plants = [read_parameters(module, values) for _, _, values in starts]
     if len({tuple(lanes(p, bank) for bank in module.BANKS) for p in plants}) == 1:
-        return plants
+        return plants, starts[0][1]
     what = "banks differ in size" if plants else "there is no plant"
     expected = "one mapping per plant, equal in the sizes of banks"
     raise UsageError(what, "Stepper.parameters", expected)
@@ -58,6 +70,11 @@ def read_quanta(
     states = row_names(module.STATES, p)
     banks = {record.name: row_names([record], p) for record in module.STATES if record.bank}
     where = "Stepper.quantum"
+    for name in {*(given or ())} & {f"T_{body.name}" for body in module.BODIES}:
+        known_hot = [outputs[n] for n in heat_exchanges(module)]
+        remedy = f"temperatures among the outputs: {listing(known_hot)}"
+        expected = f"a state or output: {listing([*states, *outputs, *banks])}"
+        raise UsageError(f"{quote(name)} is not measured", where, expected, remedy)
     known = known_keys(given, (*states, *outputs, *banks), where)
     sizes = {name: positive(value, f"{where}.{name}") for name, value in known.items()}
     shared = {lane: sizes[bank] for bank in banks if bank in sizes for lane in banks[bank]}

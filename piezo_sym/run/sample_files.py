@@ -21,13 +21,14 @@ from piezo_sym.files import near_file, path_of
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.samples import Samples, read_samples
 
-DELIMITERS = ",;\t"
+DELIMITERS, COMMENTS = ",;\t", ("#", "%")
 #: The unit of temperature with an offset in headers, and its zero [K].
 CELSIUS, ZERO_CELSIUS = ("degC", "\N{DEGREE SIGN}C"), 273.15
 HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its unit, t [ms]
 OTHERWISE = re.compile(  # t (ms), t/ms
     r"(?P<name>.*?)\s*(?:\((?P<unit>[^()]+)\)|/\s*(?P<over>[^/()]+))"
 )
+AT_ENTRY = re.compile(r"at entry (\d+)")
 #: Endings of names that are meant as units.
 TIMES, VALUES = ("ns", "us", "ms", "min"), ("mV", "kV", "uA", "mA", "um", "mm", "mN", "kN", "degC")
 
@@ -39,7 +40,7 @@ def samples_from_csv(
 
     A header such as ``t [ms],V_in [V]``, ``t (ms)`` or ``t/ms`` gives the units: times and values
     are converted to SI, and a run refuses values whose dimension is not that of its input. Without
-    units, times are in s, and values in the SI unit of the input.
+    units, times are in s, and values in the SI unit of the input. A time given twice is a jump.
 
     Parameters
     ----------
@@ -66,9 +67,19 @@ def samples_from_csv(
         _refuse_suffix(*headers[n], ends, f"{path}, header")
     defaults = (t, "s"), (x, "the input's SI unit")
     assumed = [f"{headers[n][0]} in {default}" for n, default in defaults if not headers[n][1]]
-    signal = read_samples(times * seconds, values, str(path))
+    try:
+        signal = read_samples(times * seconds, values, str(path))
+    except UsageError as error:
+        error.what = AT_ENTRY.sub(lambda at: f"in line {_lines(path)[int(at[1])]}", error.what)
+        raise
     source = f"{path}, column {quote(headers[x][0])}"
     return replace(signal, unit=unit, assumed=" and ".join(assumed), source=source)
+
+
+def _lines(path: Path) -> list[int]:
+    """Return the line of each row below the header; empty lines are none."""
+    with _open(path) as (_, _, rows):
+        return [line for line, row in enumerate(rows, start=2) if row]
 
 
 def header_of(name: object, unit: str) -> str:
@@ -109,8 +120,9 @@ def _header_fault(names: Sequence[str]) -> tuple[str, str]:
     """Return why these cells are no header, if they are none, and what to do."""
     if not names:
         return "line 1 is empty", "delete empty lines at the beginning"
-    if names[0].startswith("#"):
-        return "line 1 begins with '#'", "delete the '#', or the lines that begin with it"
+    if (mark := names[0][:1]) in COMMENTS:
+        what = f"line 1 begins with {quote(mark)}"
+        return what, f"delete the {quote(mark)}, or the lines that begin with it"
     if all(_is_number(name) for name in names):
         return "line 1 has numbers where names are expected", ""
     if len(names) == 1:
@@ -236,7 +248,7 @@ def _cell(
         what = f"{quote(text)} is not a number{column}"
         remedy = "units go into the header: t [ms]" if line == 2 and text[:1].isalpha() else ""
         remedy = "write decimals with a point" if _is_number(text.replace(",", ".")) else remedy
-        remedy = "delete lines that begin with '#'" if text.startswith("#") else remedy
+        remedy = f"delete lines that begin with '{text[0]}'" if text[:1] in COMMENTS else remedy
         raise FileError(what, where, "a number like 1.5e-3", remedy) from cause
     if not isfinite(value):
         raise FileError(f"{quote(text)} is not finite{column}", where, "a finite number")

@@ -22,7 +22,7 @@ from piezo_sym.run.collocation import METHOD, FixedStep, read_order, stages_for
 from piezo_sym.run.dataset import read_outputs
 from piezo_sym.run.events import read_watched
 from piezo_sym.run.guard import slack_of
-from piezo_sym.run.inputs import InputValue
+from piezo_sym.run.inputs import InputValue, warn_undriven
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, checked
 from piezo_sym.run.parameters import LaneValue, read_parameters, sample_times, start_of
@@ -111,7 +111,8 @@ def simulate(
         module's initial state. Stores that are joined have one state, the sum of theirs, with the
         ratios of what is between them: `show` says which. Or a Dataset
         of this model, or an instant of one, ``run.isel(time=-1)``: the run goes on from its last
-        state, with its parameters but for those given; integrals begin at 0 again.
+        state, with its parameters but for those given; integrals begin at 0 again, and inputs are
+        given anew: an `InputWarning` names those of the run that are left out.
     t0 : the time at which the run starts [s]; when left out, 0, or the last time of a Dataset.
     method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
@@ -175,6 +176,7 @@ def simulate(
     named = read_dissipative_start(dissipative_start, named)
     length = positive(duration, "simulate.duration")
     start, state, given = start_of(module, t0, initial, parameters)
+    warn_undriven(module, initial, inputs)
     check_resolved(start, length)
     samples = sample_times(times, step, length, start)
     values, chosen = read_parameters(module, given), choose_method(module, named, step)

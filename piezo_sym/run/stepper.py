@@ -22,7 +22,7 @@ from piezo_sym.run.collocation import read_order
 from piezo_sym.run.engine.batch import Stepping
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.module import GeneratedModule, checked, row_names
-from piezo_sym.run.plant import Given, Plant, calls_of, read_held, read_plants, read_quanta
+from piezo_sym.run.plant import Given, Plant, Start, calls_of, read_held, read_plants, read_quanta
 from piezo_sym.run.system import DrivenModule
 
 #: The longest delay of inputs, in calls.
@@ -65,9 +65,8 @@ class Stepper:
         step to step after a jump, at order 2, instead of decaying: take shorter steps, `every` so
         many, or a higher order. Of `simulate`, `dissipative_start` damps them; a Stepper has none.
     order : 2, 4, 6, 8, 10 or 12: the order of the error in the step, where all is smooth.
-    parameters, initial, inputs : name -> number, as for `simulate`, `<bank>_count` and `T_<body>`
-        among them; `inputs` are those at t = 0, numbers only. A list of parameters makes as many
-        plants: each array has a last axis for them.
+    parameters, initial, inputs : as for `simulate`, of a Dataset its end; `inputs` are those at
+        t = 0, numbers only. A list of parameters makes as many plants, the last axis of arrays.
     every : steps of a call, its inputs held: the sample time is every*step.
     delay : calls until inputs act; those at t = 0 act until then.
     quantum : state, a lane's, a bank's or an output `y_<port>` -> quantum of its measurement, SI.
@@ -102,7 +101,7 @@ class Stepper:
         step: float,
         order: int = 2,
         parameters: Given | Sequence[Given] | None = None,
-        initial: Given | None = None,
+        initial: Start | None = None,
         inputs: Mapping[str, float] | None = None,
         every: int = 1,
         delay: int = 0,
@@ -111,7 +110,8 @@ class Stepper:
         self._name, self._h = checked(module).NAME, positive(step, "Stepper.step")
         stages, engine = read_order(order, "Stepper.order") // 2, engine_of(module)
         self._many = isinstance(parameters, Sequence)
-        values, held = read_plants(module, parameters), read_held(module, inputs, self._h)
+        values, initial = read_plants(module, parameters, initial)
+        held = read_held(module, inputs, self._h)
         self.states = tuple(row_names(module.STATES, values[0]))
         self.inputs = tuple(record.name for record in module.INPUTS)
         self.outputs = tuple(f"y_{record.name}" for record in module.OUTPUTS)

@@ -27,6 +27,7 @@ from piezo_sym.run.parameters import (
     read_initial,
     read_parameters,
     read_sizes,
+    refuse_run,
     sample_times,
 )
 from piezo_sym.run.signals import Constant, Signal
@@ -179,6 +180,7 @@ def read_plan(
         only_end = reduce == "last" and times is step is None
         samples = sample_times(2 if only_end else times, step, end)
         signals = read_inputs(module, inputs, end)
+        refuse_run(module, initial)
         axes = read_axes(module, over, end, read_sizes(module, parameters))
         for target in (target for axis in axes for target in axis.targets):
             given = {"parameters": parameters, "initial": initial, "inputs": inputs}[target.kind]

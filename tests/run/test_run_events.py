@@ -120,7 +120,8 @@ def test_a_run_goes_on_where_another_ended(options, tmp_path):
         assert np.abs(whole[name][-1] - second[name][-1]).max() < 1e-14 * size
     assert second.attrs["parameter_d"] == 300.0
     assert second.supplied_supply[0] == 0
-    changed = simulate("piezo_stack", duration=1e-3, initial=first, parameters={"d": 1.0}, t0=0)
+    rest = {"duration": 1e-3, "inputs": DRIVE, "parameters": {"d": 1.0}}
+    changed = simulate("piezo_stack", initial=first, t0=0, **rest)
     assert (changed.attrs["parameter_d"], changed.time[0]) == (1.0, 0.0)
 
 
