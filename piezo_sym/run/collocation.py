@@ -196,6 +196,9 @@ def _stuck_error(system: DrivenModule, t: float, x: FloatArray) -> RunError:
     elif np.max(np.abs(x)) > GROWN:
         why = "it grows without bound"
         remedy = "check the signs of laws: a spring pulls back by k*q, not by -k*q"
+    elif steep := system.overflowing(t, x):
+        why = f"the slopes of its laws by {listing(map(quote, steep))} overflow there"
+        remedy = "write laws in which no term does: 1/cosh(x)**2 may, 1 - tanh(x)**2 does not"
     names = [record.name for record in system.module.STATES]
     rows = system.rows(system.module.STATES)
     values = ", ".join(f"{n} = {x[row.start]:.6g}" for n, row in zip(names, rows, strict=True))
