@@ -1,23 +1,27 @@
 """`plot`: a dashboard of a run: states, inputs and outputs, temperatures, and the ledger.
 
-Input: the `xarray.Dataset` of a run.  Output: a Matplotlib figure with one panel per unit of the
-states, inputs, outputs and temperatures; heat released and entropy produced, stacked by process;
-heat conducted between bodies; and the residual of the energy balance; without empty panels.
+Input: the `xarray.Dataset` of a run.  Output: a Matplotlib figure with one panel per unit and size
+of the states, inputs, outputs and temperatures; heat released and entropy produced, stacked by
+process; heat conducted between bodies; and the residual of the energy balance; times of events as
+vertical lines; without panels of what is absent, or 0 all the time.
 """
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import cycle
 from typing import Any, TypeAlias
 
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from piezo_sym.analysis.style import COLOURS, DASHES, LABEL, SMALL, dress
 from piezo_sym.errors import UsageError, listing, one_line, quote
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import CONDUCTED
+from piezo_sym.run.events import EVENT
 
 Panel: TypeAlias = tuple[str, Callable[[Axes], None]]
 
@@ -26,7 +30,9 @@ WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
 LEGEND_WIDTH = 48  # characters of a legend, beside the power of ten of an axis
 HANDLE_WIDTH = 5  # characters that the line beside a name takes
 HATCHES = ("", "///", "...", "xxx")  # for areas that share a colour
-LABEL_WIDTH = 24  # characters of names beside an axis
+LABEL_WIDTH = 24  # characters beside an axis, in each of two lines
+#: Quantities smaller than their unit's largest one by more than this get a panel of their own.
+APART = 1000.0
 MOST_LANES = 8  # drawn one by one; of more, the mean and the range are drawn
 LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
 SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
@@ -61,12 +67,16 @@ def plot(run: xarray.Dataset) -> Figure:
         axes.ticklabel_format(axis="y", scilimits=(-2, 4), useMathText=True)
         axes.yaxis.get_offset_text().set_fontsize(SMALL)
         draw(axes)
+        marks = _mark(axes, run)
         axes.set_ylabel(label, fontsize=LABEL)
         _small_legend(axes)
     for axes in grid[len(panels) :]:
         axes.remove()
     for axes in grid[max(0, len(panels) - ACROSS) : len(panels)]:  # the lowest panel of each column
         axes.tick_params(labelbottom=True)
+    if marks:
+        place = {"loc": "outside upper right", "ncols": len(marks), "frameon": False}
+        figure.legend([*marks.values()], [*marks], fontsize=SMALL, **place)
     figure.supxlabel("time [s]", fontsize=LABEL)
     figure.suptitle(str(run.attrs.get("model", "run")), fontsize=LABEL + 1)
     return figure
@@ -94,8 +104,9 @@ def refuse_others(run: xarray.Dataset) -> None:
 
 
 def _panels(run: xarray.Dataset) -> Iterator[Panel]:
-    for unit, names in _by_unit(run).items():
-        yield f"{_shown(names)} [{unit}]", partial(_lines, run=run, names=names)
+    for unit, named in _by_unit(run).items():
+        for names in _by_size(run, named):
+            yield _shown(names, unit), partial(_lines, run=run, names=names)
     sums = (
         ("heat released [J]", _stack, "heat_", False),
         (f"{CONDUCTED} [J]", _lines, "heat_", True),
@@ -115,10 +126,34 @@ def _is_conducted(variable: xarray.DataArray) -> bool:
     return str(variable.attrs.get("long_name", "")).startswith(CONDUCTED)
 
 
-def _shown(names: list[str]) -> str:
+def _shown(names: list[str], unit: str) -> str:
     """Return the names of a panel, as many as fit beside it; its legend has all of them."""
-    count = max([1, *(n for n in (2, 3) if len(", ".join(names[:n])) <= LABEL_WIDTH)])
-    return ", ".join(names[:count]) + (", ..." if len(names) > count else "")
+    texts = [", ".join([*names[:n], *["..."] * (len(names) > n)]) for n in (3, 2, 1)]
+    text = next((text for text in texts if len(text) <= LABEL_WIDTH), texts[-1])
+    return f"{text}{' ' if len(f'{text} [{unit}]') <= LABEL_WIDTH else chr(10)}[{unit}]"
+
+
+def _by_size(run: xarray.Dataset, names: list[str]) -> Iterator[list[str]]:
+    """Yield quantities of one unit in groups of like size, without those that are always 0."""
+    sizes = {name: float(np.nanmax(np.abs(_lanes(run[name])), initial=0.0)) for name in names}
+    left = names if run.time.size > 1 else []  # of one instant, 0 is a value like others
+    if not left:
+        yield names
+    while left := [name for name in left if sizes[name] > 0]:
+        least = max(sizes[name] for name in left) / APART
+        yield [name for name in left if sizes[name] >= least]
+        left = [name for name in left if sizes[name] < least]
+
+
+def _mark(axes: Axes, run: xarray.Dataset) -> dict[str, LineCollection]:
+    """Draw the times of events as vertical lines; return those of each event by its name."""
+    dashes, marks = cycle(DASHES[:0:-1]), dict[str, LineCollection]()
+    for name, hits in run.coords.items():
+        if str(hits.attrs.get("long_name", "")).startswith(EVENT):
+            look: dict[str, Any] = {"colors": "0.4", "linestyles": [next(dashes)], "linewidth": 0.7}
+            across = axes.get_xaxis_transform()
+            marks[str(name)] = axes.vlines(hits.values, 0.0, 1.0, transform=across, **look)
+    return marks
 
 
 def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     import xarray
 
 STORE = ".zarr"
+#: Digits of printed values; and how much larger than a change a value is, if that is round-off.
+DIGITS, ROUND_OFF = 6, 1e12
 ENDINGS = (".nc", ".csv", STORE)
 METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
 LSODA."""
@@ -138,9 +141,11 @@ def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) ->
     """Write a result, then print it, so that a closed pipe does not lose it."""
     if out is not None and not _is_store(out):
         _write(result, out)
+    from piezo_sym.run.events import EVENT
+
     _print(result)
     for name, hits in result.coords.items():
-        if str(hits.attrs.get("long_name", "")).startswith("times of event"):
+        if str(hits.attrs.get("long_name", "")).startswith(EVENT):
             first = ", ".join(f"{t:.9g}" for t in hits.values[:4]) + ", ..." * (hits.size > 4)
             typer.echo(f"event {name}, {hits.size} in all: t = {first or 'never'}")
     if "stopped" in result.attrs:
@@ -204,15 +209,23 @@ def keeping(out: Path | None) -> Iterator[None]:
 def _print(result: xarray.Dataset) -> None:
     end, rows = float(result.time.values[-1]), []
     for name, variable in result.data_vars.items():
-        values = variable.values[-1] if "time" in variable.dims else variable.values
-        last = values.reshape(-1)  # for an event, the values at its hits
+        over = "time" in variable.dims
+        values = variable.isel(time=[0, -1]).values if over else variable.values[None]
+        first, last = values.reshape(len(values), -1)[[0, -1]]  # of an event, those at its hits
         if not last.size:
             continue
-        value = ", ".join(f"{v:.6g}" for v in last[:4])
+        pairs_of = zip(last[:4].tolist(), first[:4].tolist(), strict=True)
+        value = ", ".join(f"{v:.{_digits(v, v - before)}g}" for v, before in pairs_of)
         more = ", ..." if last.size > 4 else ""
         unit, about = (str(variable.attrs.get(key, "")) for key in ("units", "long_name"))
         rows.append((str(name), value + more, unit, about))
     print_table(f"{result.attrs['model']} at t = {end:.6g} s", ("", "value", "unit", ""), rows)
+
+
+def _digits(value: float, change: float) -> int:
+    """Return how many digits show a value, and three of its change unless it is round-off."""
+    ratio = abs(value / change) if change else 0.0
+    return DIGITS + max(0, math.ceil(math.log10(ratio)) - 3) if 1 < ratio < ROUND_OFF else DIGITS
 
 
 def _write(result: xarray.Dataset, path: Path) -> None:

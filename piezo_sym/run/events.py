@@ -31,6 +31,8 @@ from piezo_sym.run.system import DrivenModule
 Sampler: TypeAlias = Callable[[FloatArray], tuple[FloatArray, Trajectory]]
 #: Samples to find changes of sign: per step, and the least and greatest number of them.
 PER_STEP, LEAST, MOST = 4, 1000, 20_000
+#: How the description of the times of an event begins.
+EVENT = "times of event"
 KNOWN = "a state, input, y_<port>, T_<body> or parameter"
 #: A quantity of an element, as `spring.effort`: no name of the language of laws.
 QUANTITY = re.compile(r"\b([A-Za-z_]\w*)\.([A-Za-z_]\w*)")
@@ -250,7 +252,7 @@ def event_variables(
 ) -> Iterator[tuple[str, Any]]:
     """Yield each event's times, a coordinate, and the states, inputs, outputs, temperatures."""
     for name, at in located.times.items():
-        yield name, ((name,), at, attributes("s", f"times of event {quote(name)}"))
+        yield name, ((name,), at, attributes("s", f"{EVENT} {quote(name)}"))
         run = seen.at(np.searchsorted(times, at))
         for quantity, (dims, values, attrs) in Evaluation.of(system, run).instants():
             yield f"{quantity}_at_{name}", ((name, *dims[1:]), values, attrs)

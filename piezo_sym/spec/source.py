@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from piezo_sym.errors import FileError, SpecError, UsageError, listing, nearest, quote
-from piezo_sym.files import near_file
 from piezo_sym.spec.names import NAME
 from piezo_sym.spec.syntax import remedy_at
 
@@ -79,8 +78,8 @@ def component_file(given: object, where: str, folder: Path | None) -> Path:
         raise SpecError(f"{quote(given)} leads out of the spec's folder", where, expected, remedy)
     if not os.path.isfile(path):
         known = nearest(given, shipped()).replace("known", "shipped")
-        near = near_file(path.with_suffix(".toml")) if len(relative.parts) == 1 else ""
-        known = near if near.startswith("did you mean") else known
+        beside = os.path.isfile(folder / f"{given}.toml")
+        known = f"did you mean {quote(f'{given}.toml')}?" if beside else known
         raise SpecError(f"{quote(given)} is no file there, and not shipped", where, expected, known)
     return path
 

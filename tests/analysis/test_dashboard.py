@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray
+from matplotlib.collections import LineCollection
 
 from piezo_sym import plot, simulate, sine, sweep
 from piezo_sym.errors import UsageError
@@ -49,7 +50,6 @@ def test_every_quantity_has_its_panel():
         "Q_C [C]",
         "phi [Wb]",
         "S [J/K]",
-        "F_ext [N]",
         "V_in [V]",
         "T_e, T_body [K]",
         "y_load [m/s]",
@@ -79,7 +79,29 @@ def test_time_is_named_once_and_its_numbers_stand_under_every_column():
     assert {axes.get_xlabel() for axes in figure.axes} == {""}
     figure.draw_without_rendering()
     numbered = [any(t.get_visible() for t in axes.get_xticklabels()) for axes in figure.axes]
-    assert numbered == [False] * 11 + [True] * 3
+    assert numbered == [False] * 10 + [True] * 3
+
+
+def test_quantities_of_very_different_sizes_have_panels_of_their_own():
+    figure = plot(actuator(times=11, outputs=["spring", "body"]))
+    assert {"body.energy [J]", "spring.energy [J]"} <= {*labels(figure)}
+    assert "T_e, T_body, body.effort\n[K]" in labels(figure)
+
+
+def test_what_is_zero_all_the_time_has_no_panel():
+    run = actuator(times=11)
+    assert "F_ext [N]" not in labels(plot(run))
+    assert "F_ext [N]" in labels(plot(run.assign(F_ext=run.F_ext + 1e-9)))
+
+
+def test_times_of_events_are_marked_in_every_panel_and_named_once():
+    figure = plot(actuator(times=11, events={"up": "q - 1e-4", "hot": "T_body - 298.2"}))
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["up", "hot"]
+    for axes in figure.axes:
+        up, hot = (lines for lines in axes.collections if isinstance(lines, LineCollection))
+        assert (len(up.get_segments()), len(hot.get_segments())) == (4, 1)
+    assert not plot(actuator(times=11)).legends
 
 
 def test_curves_are_the_run():
@@ -152,8 +174,8 @@ def test_a_legend_covers_no_curve(lanes):
 @pytest.mark.long
 def test_the_name_of_an_axis_is_no_longer_than_its_panel():
     figure = plot(actuator(times=11, outputs="all"))
-    assert "V_in, capacitor.effort, ... [V]" in labels(figure)
-    assert "spring.effort, ... [N]" not in labels(figure)
+    assert "V_in, ... [V]" in labels(figure)
+    assert "y_load, spring.flow, ...\n[m/s]" in labels(figure)
     figure.draw_without_rendering()
     for axes in figure.axes:
         named = axes.yaxis.label.get_window_extent()

@@ -559,3 +559,13 @@ def test_a_folder_that_is_made_is_said(call, tmp_path, ending):
     assert call(*SHORT, "--out", path).out.splitlines()[-2:] == [said, str(path)]
     assert path.exists()
     assert "made the folder" not in call(*SHORT, "--out", path.with_stem("again")).out
+
+
+def test_last_values_have_the_digits_that_show_their_change(call):
+    out = call("simulate", "heat_exchanger", "--duration", "1us").out
+    shown = next(line.split()[1] for line in out.splitlines() if line.split()[:1] == ["T_hot"])
+    run = piezo_sym.simulate("heat_exchanger", duration=1e-6)
+    before, last = (f"{float(run.T_hot[n]):.6g}" for n in (0, -1))
+    assert before == last
+    change = float(run.T_hot[-1] - run.T_hot[0])
+    assert float(shown) - float(run.T_hot[0]) == pytest.approx(change, rel=0.01)
