@@ -75,8 +75,8 @@ def plot(run: xarray.Dataset) -> Figure:
     for axes in grid[max(0, len(panels) - ACROSS) : len(panels)]:  # the lowest panel of each column
         axes.tick_params(labelbottom=True)
     if marks:
-        place = {"loc": "outside upper right", "ncols": len(marks), "frameon": False}
-        figure.legend([*marks.values()], [*marks], fontsize=SMALL, **place)
+        look: dict[str, Any] = {"fontsize": SMALL, "frameon": False, "ncols": len(marks)}
+        figure.legend([*marks.values()], [*marks], loc="outside upper right", **look)
     figure.supxlabel("time [s]", fontsize=LABEL)
     figure.suptitle(str(run.attrs.get("model", "run")), fontsize=LABEL + 1)
     return figure

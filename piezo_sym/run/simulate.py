@@ -172,9 +172,8 @@ def simulate(
         expected = "a function of the time in s, or None"
         raise UsageError(f"{quote(progress)} shows no progress", "simulate.progress", expected)
     named, tolerance = checked_method(method), read_rtol(rtol)
-    fixed = read_step(step, order, named, rtol)
+    fixed, length = read_step(step, order, named, rtol), positive(duration, "simulate.duration")
     named = read_dissipative_start(dissipative_start, named)
-    length = positive(duration, "simulate.duration")
     start, state, given = start_of(module, t0, initial, parameters)
     warn_undriven(module, initial, inputs)
     check_resolved(start, length)

@@ -65,8 +65,9 @@ class Stepper:
         step to step after a jump, at order 2, instead of decaying: take shorter steps, `every` so
         many, or a higher order. Of `simulate`, `dissipative_start` damps them; a Stepper has none.
     order : 2, 4, 6, 8, 10 or 12: the order of the error in the step, where all is smooth.
-    parameters, initial, inputs : as for `simulate`, of a Dataset its end; `inputs` are those at
-        t = 0, numbers only. A list of parameters makes as many plants, the last axis of arrays.
+    parameters, initial, inputs : as for `simulate`, `<bank>_count`, `T_<body>` and a Dataset among
+        them; `inputs` are those at t = 0, numbers only. A list of parameters makes as many plants:
+        each array has a last axis for them.
     every : steps of a call, its inputs held: the sample time is every*step.
     delay : calls until inputs act; those at t = 0 act until then.
     quantum : state, a lane's, a bank's or an output `y_<port>` -> quantum of its measurement, SI.
@@ -109,9 +110,8 @@ class Stepper:
     ) -> None:
         self._name, self._h = checked(module).NAME, positive(step, "Stepper.step")
         stages, engine = read_order(order, "Stepper.order") // 2, engine_of(module)
-        self._many = isinstance(parameters, Sequence)
+        self._many, held = isinstance(parameters, Sequence), read_held(module, inputs, self._h)
         values, initial = read_plants(module, parameters, initial)
-        held = read_held(module, inputs, self._h)
         self.states = tuple(row_names(module.STATES, values[0]))
         self.inputs = tuple(record.name for record in module.INPUTS)
         self.outputs = tuple(f"y_{record.name}" for record in module.OUTPUTS)
