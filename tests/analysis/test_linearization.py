@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import StateSpace
 
-from piezo_sym import Stepper, linearize, load, operating_point, simulate
+from piezo_sym import linearize, load, operating_point, simulate
 from piezo_sym.errors import PiezoError, RunError, UsageError
 from piezo_sym.modules import module_of
 from piezo_sym.spec.load import parse
@@ -136,7 +136,7 @@ def test_messages_name_its_own_arguments(given, said) -> None:  # type: ignore[n
 
 def test_a_run_is_no_state_but_has_one() -> None:
     run = simulate("piezo_stack", inputs={"V_in": 100.0}, duration=1e-3, times=2)
-    for refuses in (lambda at: linearize("piezo_stack", at=at), rests, steps):
+    for refuses in (lambda at: linearize("piezo_stack", at=at), rests):
         with pytest.raises(UsageError, match="a Dataset is no state") as error:
             refuses(run)
         state = eval(error.value.remedy.removeprefix("give "), {"run": run})
@@ -145,10 +145,6 @@ def test_a_run_is_no_state_but_has_one() -> None:
 
 def rests(initial: object) -> object:
     return operating_point("piezo_stack", initial=initial)
-
-
-def steps(initial: object) -> object:
-    return Stepper("piezo_stack", step=1e-5, initial=initial)
 
 
 def _words(records: tuple) -> list[str]:  # type: ignore[type-arg]
