@@ -34,7 +34,7 @@ static void MODEL(stuck)(MODEL(batch) *b, int lane)
     SET(b->m.over, lane, 1);
     l->stuck = 1;
     l->solves = 0;
-    l->refused = 0;
+    l->refused = l->idle = 0;
     l->known = 0.0;
     l->h = b->first;
     l->which = -1;
@@ -135,14 +135,17 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
     ++run->steps;
     run->iterations = (long)LANE(&b->m.iterations, 0, lane);
     const double most = l->refused ? 1.0 : 4.0; /* a length that was just refused is not tried again */
-    l->refused = l->t > before ? 0 : l->refused + 1; /* switches may lead back to each other at one time */
+    l->refused = 0;
+    l->idle = l->t > before ? 0 : l->idle + 1; /* switches may lead back to each other at one time */
     l->crawled = l->t - before > CRAWL * fabs(b->stop) ? 0 : l->crawled + 1;
     l->phase = STEP;
     if (b->fixed > 0.0) {
         l->halved = l->h < b->fixed ? l->halved : 0;
         l->h = fmin(b->fixed, 2.0 * l->h);
     } else {
-        if (l->turned >= 0 && !l->aimed) { /* the length its error allows after a switch, the shortest of recent ones */
+        const double aimed = l->which < 0 ? l->aimed : 0.0; /* in vain */
+        const double whole = fmax(l->whole, l->aimed);
+        if (l->turned >= 0 && l->aimed == 0.0) { /* the length its error allows after a switch, the shortest of recent ones */
             double *const after = &LANE(b->after, l->turned, lane);
             *after = fmin(l->whole * fmin(l->longer, most), *after > 0.0 ? 1.5 * *after : HUGE_VAL);
             LANE(b->tried, l->turned, lane) = l->whole;
@@ -153,14 +156,18 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
         l->turned = l->which;
         if (l->which >= 0) {
             const double after = LANE(b->after, l->which, lane);
-            l->h = after > 0.0 ? after : fmin(l->longer, 0.3) * l->whole;
+            l->h = after > 0.0 ? after : fmin(l->longer, 0.3) * whole;
         } else if (!last) {
             l->h = fmin(l->step * fmin(l->longer, most), SUDDEN * l->steady);
-            l->steady = l->step * l->longer;
+            l->h = fmax(l->h, fmin(l->step * l->longer, aimed));
+            l->steady = fmax(l->step * l->longer, aimed);
         }
-        l->aimed = OVER_SWITCH * l->ahead < l->h;
-        if (l->aimed)
-            l->h = OVER_SWITCH * l->ahead;
+        l->h = fmin(l->h, BELOW_HARD * l->hard);
+        l->hard *= LESS_HARD;
+        const int aims = aimed == 0.0 && l->aims < MOST_AIMS && OVER_SWITCH * l->ahead < l->h;
+        l->aimed = aims ? l->h : 0.0;
+        l->aims = aims ? l->aims + 1 : 0;
+        l->h = aims ? OVER_SWITCH * l->ahead : l->h;
         l->ahead = HUGE_VAL;
     }
     l->behind = 1;
@@ -172,7 +179,7 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
         MODEL(end_run)(b, lane, 0);
     else if (l->crawled > MOST_CRAWLED && b->fixed == 0.0)
         MODEL(end_run)(b, lane, 1);
-    else if (l->refused > MOST_REFUSED)
+    else if (l->idle > MOST_REFUSED)
         MODEL(stuck)(b, lane);
     else if (l->t >= l->segment->stop) {
         ++l->segment;
@@ -192,7 +199,7 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, doubl
             SET(*turns, lane, 1);
             l->known = 0.0;
             l->phase = STEP;
-            if (++l->refused > MOST_REFUSED)
+            if (++l->idle > MOST_REFUSED)
                 MODEL(stuck)(b, lane);
             return 0;
         }

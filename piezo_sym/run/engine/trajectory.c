@@ -61,9 +61,12 @@ typedef struct {
     double steady; /* the length that the error of the step before allows */
     double latest;          /* the error of this step */
     double compared, error; /* of another, the last or the last one after the same switch; 0: none */
+    double hard;   /* about how long a step cannot be solved, as one before could not; or HUGE_VAL */
+    double aimed;  /* the length of a step but for a switch, just behind which it is to end; or 0 */
     double ahead;  /* time from the end of the step to the next switch, or HUGE_VAL */
     int phase, behind, predicted, last, cuts, refused, halved;
-    int aimed;   /* whether the step is to end just behind a switch */
+    int idle;    /* switches in a row at one time */
+    int aims;    /* steps in a row that were to end behind a switch */
     int stuck;   /* whether steps go over kinks because they could not end at them */
     int crawled; /* steps in a row that are hardly longer than round-off of the time */
     int to_round_off; /* how many more steps are solved to round-off: see residual.c */
@@ -130,12 +133,18 @@ enum { TRIED = 32, AGAIN = 12 };
 #define LONGER 1.05
 #define LEAST_POWER 3.0
 #define MOST_LONGER 3.0
+/* Steps are this much shorter than one that could not be solved, and less so with each of them. */
+#define BELOW_HARD 0.6
+#define LESS_HARD 2.0
 /* Rates before a switch predict those after it, in a step at most this much longer than theirs. */
 #define LIKE_BEFORE 2.0
 /* A refused step is repeated up to where a path functional begins to yield, if before this part. */
 #define YIELDS 0.999
-/* How far behind a step a switch is looked for, in its lengths; and how far a step goes over it. */
-enum { AHEAD = 3 };
+/*
+ * How far behind a step a switch is looked for, in its lengths; how many steps in a row may end behind one,
+ * since at rest switches follow each other without end; and how far a step goes over one.
+ */
+enum { AHEAD = 3, MOST_AIMS = 2 };
 #define OVER_SWITCH 1.1
 /* A switch within this fraction of a step from its end, or its beginning, counts as there. */
 #define AT_END 1e-9
