@@ -75,7 +75,7 @@ class Collocation:
 
     @property
     def takes_residuals(self) -> bool:
-        """Whether the body `heated` can take as heat what Newton's method leaves of the equations."""
+        """Whether the body `heated` takes what Newton's method leaves of the equations as heat."""
         return self.heated >= 0 and bool(self.stage.costates)
 
 
