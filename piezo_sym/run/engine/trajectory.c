@@ -119,33 +119,10 @@ enum { MOST_HALVED = 1000 };
 #define SHORTEST_PART 1e-15
 /* A mode at kinks is kept for TRIED solves; the slower one is tried anew after AGAIN comparisons. */
 enum { TRIED = 32, AGAIN = 12 };
-/* The step length is proportional to about this power of the error where steps contain kinks. */
-#define OVER_KINKS (-1.0 / 3.0)
-/* Safety factor: the next step is this times the one whose estimated error equals the tolerance. */
-#define PART_OF(over) ((over) ? 0.9 : 0.82)
-/* An error may be small by chance: a step is at most this much longer than the last one allowed. */
-#define SUDDEN 1.5
-/*
- * Below an error of SMALL, one step that was longer than another by LONGER tells the power of the length
- * that errors are proportional to, if it is above LEAST_POWER; the next is at most MOST_LONGER times longer.
- */
-#define SMALL 0.1
-#define LONGER 1.05
-#define LEAST_POWER 3.0
-#define MOST_LONGER 3.0
-/* Steps are this much shorter than one that could not be solved, and less so with each of them. */
-#define BELOW_HARD 0.6
-#define LESS_HARD 2.0
 /* Rates before a switch predict those after it, in a step at most this much longer than theirs. */
 #define LIKE_BEFORE 2.0
 /* A refused step is repeated up to where a path functional begins to yield, if before this part. */
 #define YIELDS 0.999
-/*
- * How far behind a step a switch is looked for, in its lengths; how many steps in a row may end behind one,
- * since at rest switches follow each other without end; and how far a step goes over one.
- */
-enum { AHEAD = 3, MOST_AIMS = 2 };
-#define OVER_SWITCH 1.1
 /* A switch within this fraction of a step from its end, or its beginning, counts as there. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
