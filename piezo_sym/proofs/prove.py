@@ -21,7 +21,13 @@ from piezo_sym.proofs.domain import rounded_points, spec_points
 from piezo_sym.proofs.laws import branch_questions
 from piezo_sym.proofs.mending import mending
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
-from piezo_sym.proofs.refutation import Finding, beside_own_values, checked_model, refutation
+from piezo_sym.proofs.refutation import (
+    Finding,
+    beside_own_values,
+    checked_model,
+    power_of_zero,
+    refutation,
+)
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import SolverLike, opinions
@@ -200,6 +206,8 @@ def _failure(question: Question, solver: SolverLike) -> Finding | None:
             return None
         if answer.result == "sat":
             found = checked_model(question, answer, shown)
+            if found.remedy:
+                found = power_of_zero(question, solver) or found
             return _of_derived(question, found) if question.derived else found
     return Finding(Verdict.OPEN, None, f"{question.label}: {answer.reason}")
 
