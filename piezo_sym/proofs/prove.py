@@ -48,6 +48,8 @@ GIVE = "the law's energy that was found could not be verified: give it, energy =
 MOST_OPEN = 4
 #: No condition that mends an obligation of more questions is looked for: each is asked again.
 MOST_MENDED = 500
+#: Most questions of an open obligation for which one is looked for: its solvers take long.
+FEW_MENDED = 40
 
 
 def prove(
@@ -232,8 +234,11 @@ def _mended_by(found: Finding, obligation: Obligation, iphs: IPHS, solver: Solve
     refuted, conditions = found.verdict is Verdict.REFUTED, ""
     if refuted and obligation.sign:
         conditions = _mending_condition(obligation.sign, obligation.questions, iphs, solver)
-    if found.remedy or (refuted and obligation.id in DECLARED):
-        conditions += _domain_conditions(obligation, iphs, solver)
+    few = 0 < len(obligation.questions) <= FEW_MENDED
+    if found.remedy or (obligation.id in DECLARED and (refuted or few)):
+        # of an open row, only what bounds parameters says more than the row itself
+        about = None if refuted or found.remedy else frozenset(iphs.model.parameters)
+        conditions += _domain_conditions(obligation, iphs, solver, about)
     return conditions or (f"; {found.remedy}" if found.remedy else "")
 
 
@@ -256,11 +261,15 @@ def _mending_condition(
     return in_words([condition_text(condition)], [condition] * broken, iphs)
 
 
-def _domain_conditions(obligation: Obligation, iphs: IPHS, solver: SolverLike) -> str:
+def _domain_conditions(
+    obligation: Obligation, iphs: IPHS, solver: SolverLike, about: frozenset[str] | None
+) -> str:
     """Return what mends a row of claims, as the end of a reason, or ''."""
     if len(obligation.questions) > MOST_MENDED:
         return ""
     ties = drive_of(iphs, obligation.element)
     asked = neighbour_questions(obligation.questions, solver)
     questions = tuple(replace(q, where=(*ties, *q.where)) for q in asked)
-    return domain_conditions(questions, iphs, ties, lambda q: _failure(q, solver) is not None)
+    return domain_conditions(
+        questions, iphs, ties, lambda q: _failure(q, solver) is not None, about
+    )

@@ -53,3 +53,34 @@ def test_a_power_that_laws_may_not_have_is_no_counterexample():
     row = rows("d*v*abs(v/v_0)**max(n - 1, 0)", "d >= 0", "v_0 > 0", "n >= 1")["welldef"]
     assert row.verdict is Verdict.OPEN
     assert row.witness is None
+
+
+BODY = 'body = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c)" }}'
+STORE = """
+[elements.body]
+kind = "storage"
+energy = "ENERGY"
+states = {{ S = {{ rate = "entropy" }} }}
+"""
+HOT = SPEC.replace("[domain]", 'b = {{ value = 1.0, unit = "1" }}\n[domain]').replace(BODY, STORE)
+
+
+@pytest.mark.parametrize(
+    ("energy", "domain", "verdict", "said", "less"),
+    [
+        ("c*T_0*(1 + S/c)**n", ["S > -c"], Verdict.REFUTED, "n > 1", "n > 0.9"),
+        ("c*T_0*(1 + S/c)**n", ["S > -c", "n > 0"], Verdict.OPEN, "n > 1", "n > 0.9"),
+        ("c*T_0*(exp(n) - exp(b))*exp(S/c)", [], Verdict.REFUTED, "n > b", "n > b - 0.1"),
+        ("c*T_0*(n**2*b - n*b)*exp(S/c)", ["n > 0", "b > 0"], Verdict.REFUTED, "n > 1", "n > 0.9"),
+    ],
+)
+def test_conditions_are_short_and_what_is_less_is_not_enough(energy, domain, verdict, said, less):
+    def row(*more):
+        text = HOT.format(law="d*v", domain=["c > 0", "T_0 > 0", "d >= 0", *domain, *more])
+        report = decide(derive(parse(text.replace("ENERGY", energy))))
+        return next(row for row in report.rows if row.id == "temperature")
+
+    assert row().verdict is verdict
+    assert f"; the condition '{said}' in [domain]" in row().reason
+    assert row(said).verdict is Verdict.PROVED
+    assert row(less).verdict is not Verdict.PROVED
