@@ -6,39 +6,28 @@ reason.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
-from functools import reduce
 
 from piezo_sym.errors import quote
-from piezo_sym.expressions.calculus import add, div, mul, neg, power
 from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tidying import tidied
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
-    Add,
-    Call,
     Cmp,
     Expr,
-    Neg,
-    Num,
     Pow,
     names,
     replaced,
 )
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.domain import spec_points
-from piezo_sym.proofs.mending import sign_factors
 from piezo_sym.proofs.obligations import NEVER, Question
-from piezo_sym.proofs.signs.reduce import Setting, factored
+from piezo_sym.proofs.shortening import shortened, sided, without_factors
 from piezo_sym.spec.elements.ports import Body, Exchange
 from piezo_sym.spec.tables import condition_text, without_default
 
 #: Of a temperature whose law is longer, a condition has the name.
 MOST_TEXT = 24
-#: Functions that are positive wherever they have a value.
-ABOVE = frozenset({"exp", "cosh"})
 #: The slopes by S of what has to rise with it.
 SLOPES = {"energy": "T = dU/dS", "temperature": "dT/dS"}
 
@@ -130,8 +119,8 @@ def _conditions(
         return not fails(Question("", question.order, where, claim, claim))
 
     for claim in sorted(broken, key=lambda claim: len(names(claim))):
-        bare = _without_factors(claim, positive)
-        short = _at_root(_shortened(bare, positive))
+        bare = without_factors(claim, positive)
+        short = _at_root(shortened(bare, positive))
         bare = short if short == bare or enough(short, claim) else _at_root(bare)
         ops = (">", "<") if bare.op == "!=" else (bare.op,)
         ways = [Cmp(op, bare.left, bare.right) for op in ops]
@@ -140,87 +129,6 @@ def _conditions(
         text = condition_text(sided(way))
         found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
     return found
-
-
-def _without_factors(claim: Cmp, positive: Callable[[Expr], bool]) -> Cmp:
-    """Return a claim on the sign of a product as one on those factors that are not positive."""
-    if claim.op not in {">", ">=", "!="} or claim.right != ZERO:
-        return claim
-    factors = (f for f in sign_factors(claim.left) if not _is_above(f))
-    kept = [f for f in factors if not positive(f)] or [claim.left]
-    return Cmp(claim.op, tidied(reduce(mul, kept)), ZERO)
-
-
-def _shortened(claim: Cmp, positive: Callable[[Expr], bool]) -> Cmp:
-    """Return a claim without factors that all terms of a sum share; of exp(x) > exp(y), x > y."""
-    if claim.op not in {">", ">=", "!="} or claim.right != ZERO:
-        return claim
-    bare = tidied(reduce(mul, (_divided(f, positive) for f in sign_factors(claim.left))))
-    inside = _logarithm(bare)
-    if inside is None:
-        return Cmp(claim.op, bare, ZERO)
-    return _shortened(_without_factors(Cmp(claim.op, inside, ZERO), positive), positive)
-
-
-def _divided(node: Expr, positive: Callable[[Expr], bool]) -> Expr:
-    """Return a sum without the positive factors that its terms share: kap - 1 of kap**2*x - kap*x.
-
-    Other trees stay as they are.
-    """
-    if not isinstance(node, Add):
-        return node
-    parts = [factored(term, Setting("", {}, positive)) for term in node.terms]
-    own = [dict(part.free) for part in parts]
-    for part, powers in zip(parts, own, strict=True):  # a factor without names, such as log(2)
-        powers.update({} if part.bound == ONE else {part.bound: Fraction(1)})
-    bases = {base: min(powers.get(base, Fraction(0)) for powers in own) for base in own[0]}
-    bases |= {
-        base: min(e, Fraction(0))
-        for powers in own[1:]
-        for base, e in powers.items()
-        if base not in bases
-    }
-    shared = {base: e for base, e in bases.items() if e and (_is_above(base) or positive(base))}
-    terms = []
-    for part, powers in zip(parts, own, strict=True):
-        term: Expr = Num(part.number)
-        for base in {**powers, **shared}:
-            e = powers.get(base, Fraction(0)) - shared.get(base, Fraction(0))
-            term = mul(term, power(base, e)) if e >= 0 else div(term, power(base, -e))
-        terms.append(term)
-    return add(*terms) if shared else node
-
-
-def _logarithm(node: Expr) -> Expr | None:
-    """Return x - y of exp(x) - exp(y), which has the same sign, or None; 1 is exp(0)."""
-    one, other, *more = (*node.terms, ZERO) if isinstance(node, Add) else (ZERO, ZERO)
-    for above, below in ((one, other), (other, one)):
-        x, y = _exponent(above), _exponent(neg(below))
-        if x and y and more == [ZERO]:
-            return add(x, neg(y))
-    return None
-
-
-def _exponent(node: Expr) -> Expr | None:
-    """Return x of exp(x), and 0 of 1."""
-    match node:
-        case Call("exp", (arg,)):
-            return arg
-    return ZERO if node == ONE else None
-
-
-def _is_above(node: Expr) -> bool:
-    return isinstance(node, Call) and node.function in ABOVE
-
-
-def sided(condition: Cmp) -> Cmp:
-    """Return a comparison of a sum with zero with what is subtracted on the right: n > 1."""
-    if condition.right != ZERO or not isinstance(condition.left, Add):
-        return condition
-    terms = condition.left.terms
-    less = [neg(t) for t in terms if isinstance(t, Neg) or (isinstance(t, Num) and t.value < 0)]
-    more = [t for t in terms if neg(t) not in less]
-    return Cmp(condition.op, add(*more), add(*less)) if more else condition
 
 
 def _at_root(claim: Cmp) -> Cmp:

@@ -10,16 +10,13 @@ from dataclasses import replace
 
 import sympy as sp
 
-from piezo_sym.expressions.calculus import mul
-from piezo_sym.expressions.exact_eval import all_hold
-from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
+from piezo_sym.expressions.tree import Cmp
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import DomainOracle, simple_counterexample
-from piezo_sym.proofs.conditions import domain_conditions, in_words, turning
+from piezo_sym.proofs.conditions import domain_conditions
 from piezo_sym.proofs.continuity import neighbour_questions
-from piezo_sym.proofs.domain import rounded_points, spec_points
-from piezo_sym.proofs.laws import branch_questions
-from piezo_sym.proofs.mending import mending
+from piezo_sym.proofs.domain import rounded_points
+from piezo_sym.proofs.mending import mending_conditions
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.refutation import (
     Finding,
@@ -233,32 +230,19 @@ def _mended_by(found: Finding, obligation: Obligation, iphs: IPHS, solver: Solve
     """Return what mends a row, as the end of its reason: a condition, else the finding's remedy."""
     refuted, conditions = found.verdict is Verdict.REFUTED, ""
     if refuted and obligation.sign:
-        conditions = _mending_condition(obligation.sign, obligation.questions, iphs, solver)
+        conditions = mending_conditions(
+            obligation,
+            obligation.sign,
+            iphs,
+            lambda q: _failure(q, solver) is not None,
+            lambda o: _decide(o, iphs, (), solver)[0].verdict is Verdict.PROVED,
+        )
     few = 0 < len(obligation.questions) <= FEW_MENDED
     if found.remedy or (obligation.id in DECLARED and (refuted or few)):
         # of an open row, only what bounds parameters says more than the row itself
         about = None if refuted or found.remedy else frozenset(iphs.model.parameters)
         conditions += _domain_conditions(obligation, iphs, solver, about)
     return conditions or (f"; {found.remedy}" if found.remedy else "")
-
-
-def _mending_condition(
-    sign: SignOf, questions: tuple[Question, ...], iphs: IPHS, solver: SolverLike
-) -> str:
-    """Return the condition under which a refuted law is passive, as the end of a reason."""
-
-    def shown(law: Expr, letter: str) -> bool:
-        claim = Cmp(">=", mul(law, Sym(letter)) if letter else law, ZERO)
-        question = Question("", questions[0].order, sign.where, claim, claim)
-        return _first_failure(branch_questions(law, question, letter), solver) is None
-
-    condition = mending(sign.law, sign.letter, shown)
-    if condition is None:
-        return ""
-    if said := turning([condition], iphs):
-        return said
-    broken = any(all_hold((condition,), point) is False for point in spec_points(iphs))
-    return in_words([condition_text(condition)], [condition] * broken, iphs)
 
 
 def _domain_conditions(
