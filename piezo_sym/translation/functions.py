@@ -3,6 +3,7 @@
 Input: values.  Output: values.  What a function needs of its argument is noted in `Field.needs`.
 Identities used, and their premises:
 exp(a + b) = exp(a) exp(b); exp(c log x) = x**c (of `raised` 0 where x = 0); log(exp z) = z;
+log(c + c exp(2 z)) = log(2 c) + z + log(cosh z) for c > 0;
 log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0; (x**(1/n))**n = x for x >= 0;
 (x**2)**(1/2) = abs(x); f(-x) = -f(x) or f(x) where a record says that f is odd or even.
 """
@@ -148,6 +149,9 @@ def _log(arg: Value) -> Value:
 
 def _log_of_product(arg: Value) -> Value:
     field, ((mono, c), *more) = arg.field, arg.terms.items()
+    if (z := _half_exponent(arg)) is not None:
+        plain = _log_of_product(field.number(2 * c))
+        return plain + z + _log_of_product(call("cosh", z))
     if more or c <= 0 or any(sign_of(field, g) < 2 for g, _ in mono):
         return field.generator("log", arg)
     whole = ((Fraction(c).numerator, 1), (Fraction(c).denominator, -1))
@@ -157,6 +161,18 @@ def _log_of_product(arg: Value) -> Value:
         log = gen.arg if gen.kind == "exp" else field.generator("log", field.raised(g, 1))
         parts += [log * field.number(e)] if log else []
     return field.total(parts)
+
+
+def _half_exponent(arg: Value) -> Value | None:
+    """Return z of c + c exp(2 z), c > 0, or None."""
+    field, factor = arg.field, arg.terms.get(())
+    others = [mono for mono in arg.terms if mono]
+    if factor is None or factor <= 0 or len(others) != 1 or arg.terms[others[0]] != factor:
+        return None
+    gens = [(field.gens[g], e) for g, e in others[0]]
+    if not all(gen.kind == "exp" and gen.arg for gen, _ in gens):
+        return None
+    return field.total([gen.arg * field.number(Fraction(e) / 2) for gen, e in gens if gen.arg])
 
 
 def _even_or_odd(function: str, arg: Value) -> Value:
