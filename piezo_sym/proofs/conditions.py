@@ -37,14 +37,12 @@ def domain_conditions(
     iphs: IPHS,
     ties: Iterable[Cmp],
     fails: Callable[[Question], bool],
-    about: frozenset[str] | None = None,
 ) -> str:
     """Return conditions for [domain], such as n > 0, under which all claims hold, or ''.
 
-    They use parameters, inputs, states and temperatures, or only those `about` which they shall be;
-    `ties` replace the letters of laws.  For a claim ``!= 0`` the spec's own values decide between
-    > 0 and < 0.  The text says whether these values satisfy the conditions; if no point does, it
-    says which temperature falls with S.
+    They use parameters, inputs, states and temperatures; `ties` replace the letters of laws.  For a
+    claim ``!= 0`` the spec's own values decide between > 0 and < 0.  The text says whether these
+    values satisfy the conditions; if no point does, it says which temperature falls with S.
     """
     points, letters = spec_points(iphs), {tie.left: tie.right for tie in ties}
     failed = [q for q in questions if fails(q)]
@@ -72,8 +70,6 @@ def domain_conditions(
         rest = tuple(c for c in found if c != claim)
         if rest and mended(rest):
             del found[claim]
-    if about is not None and not all(about >= {*names(claim)} for claim in found):
-        return ""
     broken = [claim for claim in found if not _satisfied(claim, points)]
     return in_words([*found.values()], broken, iphs)
 
