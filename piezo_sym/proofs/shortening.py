@@ -80,11 +80,13 @@ def _divided(node: Expr, positive: Positive) -> Expr:
     if not isinstance(node, Add):
         return node
     terms, none = [factors_of(term, positive) for term in node.terms], Fraction(0)
-    bases = {base for _, powers in terms for base in powers}
-    least = {base: min(powers.get(base, none) for _, powers in terms) for base in bases}
-    shared = {base: e for base, e in least.items() if e and (_is_above(base) or positive(base))}
+    shared = dict[Expr, Fraction]()
+    for base in terms[0][1]:
+        exponents = [powers.get(base, none) for _, powers in terms]
+        common = max(min(exponents), none) + min(max(exponents), none)  # 1/g of 1 + q/g stays
+        shared |= {base: common} if common and (_is_above(base) or positive(base)) else {}
     left = (
-        (number, {b: powers.get(b, none) - shared.get(b, none) for b in {**powers, **shared}})
+        (number, {base: e - shared.get(base, none) for base, e in powers.items()})
         for number, powers in terms
     )
     return add(*(product_of(*term) for term in left)) if shared else node
