@@ -85,8 +85,9 @@ def _with_bar(run: Callable[P, R]) -> Callable[P, R]:
         wanted = False if wanted is None else wanted
         if callable(wanted):
             return run(*args, **given)
-        last, length = getattr(options.get("initial"), "time", None), options.get("duration")
-        start = options.get("t0") or (0.0 if last is None else float(last[-1]))
+        last: Any = getattr(options.get("initial"), "time", None)
+        length = options.get("duration")
+        start = options.get("t0") or (float(last.max()) if getattr(last, "size", 0) else 0.0)
         total = length if isinstance(length, int | float) else 0.0  # the run refuses others
         with progress_of(wanted, total, "simulated [s]", "simulate.progress") as tell:
             watch = (lambda t: tell(t - start)) if wanted else None

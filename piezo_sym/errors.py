@@ -45,7 +45,7 @@ class PiezoError(Exception):
             parts.append(f"expected {self.expected}")
         if self.remedy:
             parts.append(self.remedy)
-        return one_line("; ".join(parts))
+        return legible("; ".join(parts))
 
     def put_in(self, outer: str) -> None:
         """Name an outer place, such as a file, in front of the places of an error and its notes.
@@ -125,16 +125,21 @@ class DriftError(PiezoError):
     exit_code: ClassVar[int] = 1
 
 
+def legible(text: str) -> str:
+    """Return a message with every character that does not print escaped, so that it is one line."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
 def one_line(text: str) -> str:
-    """Return `text` with every control or non-ASCII character escaped, so that it is one line."""
-    return "".join(c if " " <= c <= "~" else ascii(c)[1:-1] for c in text)
+    """Return `text` as one line of ASCII, with all other characters escaped."""
+    return "".join(c if c.isascii() else ascii(c)[1:-1] for c in legible(text))
 
 
 def quote(value: object) -> str:
     """Return a short, printable, quoted form of a user's value."""
     text = value if isinstance(value, str) else repr(value)
     short = text if len(text) <= MAX_QUOTE else f"{text[: MAX_QUOTE - 3]}..."
-    return one_line(f"'{short}'")
+    return legible(f"'{short}'")
 
 
 def listing(names: Iterable[str], most: int = 12) -> str:

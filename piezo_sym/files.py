@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from piezo_sym.errors import FileError, UsageError, nearest, one_line, quote
+from piezo_sym.errors import FileError, UsageError, legible, nearest, quote
 
 
 def write_text(path: Path, text: str) -> None:
@@ -133,7 +133,7 @@ def path_of(value: object, where: str) -> Path:
 
 def path_text(path: str | Path) -> str:
     """Return a path quoted for a message, printable and not shortened, as its end matters most."""
-    return one_line(f"'{path}'")
+    return legible(f"'{path}'")
 
 
 def _cannot(done: str, path: Path, error: Exception) -> FileError:

@@ -83,7 +83,7 @@ class LinearModel:
         return f"LinearModel({shown})"
 
 
-@calling("linearize")
+@calling("linearize", initial="at")
 def linearize(
     model: str | Path | Model,
     *,

@@ -922,24 +922,27 @@ static real MODEL(damping)(const MODEL(block) *m)
 }
 
 /*
- * The lanes whose rates solve the equations. A small change does not show that: changes are small,
- * too, where slopes are far too large.
+ * The lanes whose rates solve the equations, and their largest residual as a change of a state, in units of
+ * noise. A small change does not show that: changes are small, too, where slopes are far too large.
  */
-static mask MODEL(solves)(const MODEL(block) *m, real h)
+static mask MODEL(solves)(const MODEL(block) *m, real h, real *residual)
 {
     const long n = m->n;
     const real *const largest = m->largest, *const x = m->x, *const rates = m->rates, *const gap = m->gap;
-    real unsolved = zero; /* how many states are */
-#pragma omp simd reduction(+ : unsolved)
+    real most = zero, unsolved = zero; /* how many states are */
+#pragma omp simd reduction(max : most) reduction(+ : unsolved)
     for (long k = 0; k < n; ++k) {
-        real moved = zero, left = zero;
+        real moved = zero, sum = zero;
         for (long j = 0; j < STAGES; ++j) {
             moved = largest_of(moved, size_of(rates[j * n + k]));
-            left = largest_of(left, size_of(gap[j * n + k]));
+            sum += size_of(gap[j * n + k]);
         }
-        const real most = LEFT * (largest[k] + size_of(x[k]) + h * moved);
-        unsolved += chosen(h * left <= most, zero, wide(1.0));
+        const real size = largest[k] + size_of(x[k]) + h * moved + NO_SIZE;
+        const real noises = h * sum / (NOISE * size + m->noise[k]);
+        most = chosen(noises > most, noises, most);
+        unsolved += chosen(h * sum <= LEFT * size, zero, wide(1.0));
     }
+    *residual = most;
     return unsolved == 0.0;
 }
 
@@ -1012,6 +1015,8 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const mask smaller = worst < before, lost = none_of(worst < 1e300);
         const mask near = smaller & (worst < NEAR);
         const real left = worst / (before + NO_SIZE);
+        real residual;
+        const mask solved = MODEL(solves)(m, h, &residual);
         mask good = (worst <= 4.0) | (near & (worst * largest_of(left, left_before) <= 4.0));
         if (iteration > 1) { /* stagnation: round-off, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good);
@@ -1019,9 +1024,7 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
             if (iteration > m->late)
                 going &= none_of(stays & none_of(good));
         }
-        good &= none_of(lost | renewed);
-        if (any(good & going))
-            good &= MODEL(solves)(m, h);
+        good &= solved & none_of(lost | renewed);
         const mask enough = m->sketch & (worst < m->enough) & going & none_of(good | lost);
         if (any(enough)) {
             m->sketched |= enough & MODEL(strayed)(m);

@@ -21,7 +21,7 @@ from piezo_sym.analysis.balance import grid, scan, settled, temperature_range, z
 from piezo_sym.analysis.curves import Curve, CurvePoint, folds, trace
 from piezo_sym.analysis.repeating import Driven, refuse_not_following
 from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
-from piezo_sym.run.checks import FloatArray, positive_range
+from piezo_sym.run.checks import FloatArray, calling, positive_range
 from piezo_sym.run.module import GeneratedModule, checked
 from piezo_sym.run.parameters import LaneValue
 
@@ -90,6 +90,7 @@ class Branches:
         return dict(zip(COLUMNS, columns, strict=True))
 
 
+@calling("steady_branches")
 def steady_branches(
     module: GeneratedModule,
     *,

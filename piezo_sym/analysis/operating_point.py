@@ -22,7 +22,7 @@ from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray, calling, known_keys, number
 from piezo_sym.run.guard import check_limits
-from piezo_sym.run.module import GeneratedModule, by_name, checked, row_name
+from piezo_sym.run.module import GeneratedModule, by_name, checked, names_elsewhere, row_name
 from piezo_sym.run.parameters import (
     LaneValue,
     entropy_row,
@@ -124,7 +124,7 @@ def read_constants(
 ) -> FloatArray:
     """Return constant inputs u (m,): those given, else the defaults."""
     names = [record.name for record in module.INPUTS]
-    values = known_keys(given, names, where)
+    values = known_keys(given, names, where, names_elsewhere(module, "inputs"))
     default = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
     return np.array([number(values.get(name, default[name]), f"{where}.{name}") for name in names])
 

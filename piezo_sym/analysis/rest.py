@@ -137,7 +137,8 @@ class RestSearch:
         """
         if not self.inside(start):
             what = "the initial state is outside the domain, or has no rates"
-            raise RunError(what, self._model, remedy="give another as 'initial', or other inputs")
+            remedy = "give another as 'initial', or other inputs or parameters"
+            raise RunError(what, self._model, remedy=remedy)
         way = self.approach(start)
         search = self.keeping(way)
         if search.rows.size < self.rows.size:

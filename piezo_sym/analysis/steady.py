@@ -35,7 +35,7 @@ from piezo_sym.analysis.balance import (
 from piezo_sym.analysis.drifting import unsettled, warn_of_drift
 from piezo_sym.analysis.stroboscope import Stroboscope, over_period, stroboscope
 from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run.checks import FloatArray, number, positive
+from piezo_sym.run.checks import FloatArray, calling, number, positive
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
@@ -86,6 +86,7 @@ class SteadyState:
         return f"SteadyState({self.temperature:.6g} K at {self.frequency:g} Hz, {kind})"
 
 
+@calling("periodic_steady_state")
 def periodic_steady_state(
     module: GeneratedModule,
     *,
@@ -131,6 +132,7 @@ def periodic_steady_state(
     return _steady_state(strobe, _first_zero(strobe, known), accuracy)
 
 
+@calling("periodic_steady_states")
 def periodic_steady_states(
     module: GeneratedModule,
     *,

@@ -19,7 +19,7 @@ from piezo_sym.cli.reproduce import reproduce
 from piezo_sym.cli.show import show
 from piezo_sym.cli.simulate import simulate
 from piezo_sym.cli.verify import verify
-from piezo_sym.errors import PiezoError, one_line
+from piezo_sym.errors import PiezoError, legible
 
 #: The exception typer raises for a wrong command line; its module differs between versions.
 CommandError: Any = typer.BadParameter.__mro__[2]
@@ -77,7 +77,7 @@ def run(words: list[str]) -> int:
     except PiezoError as error:
         return _failed("\npiezo-sym: ".join(error.lines()), error.exit_code)
     except CommandError as error:
-        message = one_line(error.format_message()).rstrip(".")
+        message = legible(error.format_message()).rstrip(".")
         message = message.replace(", unable to parse string as a number", ", such as 0.1")
         command = f" {error.ctx.info_name}" if error.ctx and error.ctx.parent else ""
         python = "; sweeps are made in Python: help(piezo_sym.sweep)" * ("'sweep'" in message)
@@ -87,7 +87,7 @@ def run(words: list[str]) -> int:
         return CLOSED
     except OSError as error:
         if error.filename is not None:
-            return _failed(f"{one_line(str(error.filename))}: {error.strerror}", 2)
+            return _failed(f"{legible(str(error.filename))}: {error.strerror}", 2)
         return _failed(f"cannot print: {error.strerror}; free some space, or print elsewhere", 2)
     except MemoryError:
         return _failed("out of memory; use smaller banks or fewer --times", 2)

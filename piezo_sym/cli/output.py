@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from piezo_sym.errors import PiezoError, UsageError, one_line
+from piezo_sym.errors import PiezoError, UsageError, legible
 
 STYLES = {"PROVED": "green", "REFUTED": "bold red", "OPEN": "yellow"}
 
@@ -28,7 +28,7 @@ def about(spec: str, *kinds: type[PiezoError]) -> Iterator[None]:
     try:
         yield
     except PiezoError as error:
-        name = one_line(Path(spec).name)
+        name = legible(Path(spec).name)
         if isinstance(error, kinds or PiezoError) and name not in str(error):
             error.put_in(name)
         raise
@@ -47,9 +47,9 @@ def warnings_as_lines() -> Iterator[None]:
 
     def shown(message: Warning | str, *others: Any, **named: Any) -> None:
         if isinstance(message, ModuleWarning):
-            of_modules.append(f"piezo-sym: {one_line(str(message))}")
+            of_modules.append(f"piezo-sym: {legible(str(message))}")
         elif isinstance(message, kinds):
-            typer.echo(f"piezo-sym: {one_line(str(message))}", err=True)
+            typer.echo(f"piezo-sym: {legible(str(message))}", err=True)
         else:
             before(message, *others, **named)
 

@@ -57,13 +57,15 @@ def _banks(model: Model) -> Iterator[str]:
 
 def _elements(model: Model, joined: Collection[str]) -> None:
     """Print elements, inputs and parameters, in SI; `joined` are states of joined stores."""
+    from piezo_sym.expressions.tree import names
     from piezo_sym.spec.flatten import inputs_of
+    from piezo_sym.spec.tables import initial_laws, laws
 
     rows: list[tuple[str, ...]] = []
     for name, element in model.elements.items():
-        laws = "\n".join(_laws(model, name, element))
+        own = "\n".join(_laws(model, name, element))
         kind = f"{element.kind}, {element.joined} joined" if element.joined > 1 else element.kind
-        rows.append((name, kind, _where(element), laws, _starts(model, name, element, joined)))
+        rows.append((name, kind, _where(element), own, _starts(model, name, element, joined)))
     columns = ("name", "kind", "where", "laws and values (SI)", "state at t = 0")
     print_table("Elements", columns, rows)
     used, rows = inputs_of(model.elements.values()), []
@@ -71,10 +73,12 @@ def _elements(model: Model, joined: Collection[str]) -> None:
         doc = entry.doc if name in used else f"{entry.doc} (no element uses it)".strip()
         rows.append((name, entry.dimension.si, f"{entry.si:g}", doc))
     print_table("Inputs", ("name", "unit", "if not given", "what it is"), rows)
-    rows = []
+    trees = [*(law.tree for law in laws(model)), *(tree for _, tree in initial_laws(model))]
+    used, rows = {word for tree in trees for word in names(tree)}, []
     for name, parameter in model.parameters.items():
         values = listing((f"{value:g}" for value in parameter.lanes), 8)
-        rows.append((name, values, parameter.dimension.si, parameter.doc))
+        doc = parameter.doc if name in used else f"{parameter.doc} (no law uses it)".strip()
+        rows.append((name, values, parameter.dimension.si, doc))
     print_table("Parameters", ("name", "value (SI)", "unit", "what it is"), rows)
 
 

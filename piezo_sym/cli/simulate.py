@@ -91,7 +91,7 @@ def simulate(
     first column, joined by straight lines, whose header may say units: t [ms],V_in [kV]. Of several
     columns the one named like the input counts.
     """
-    _check_ending(out, events)
+    made = _check_out(out, events)
     units = Units(spec)
     signals = dict(pairs(inputs or (), "--input", units.signal))
     span = {"duration": duration, "t0": t0, "times": times, "stop": stop}
@@ -107,7 +107,7 @@ def simulate(
         **span,
         **solver,
     )
-    _report(result, [*units.assumed, *_assumed(signals)], out)
+    _report(result, [*units.assumed, *_assumed(signals), *made], out)
 
 
 def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
@@ -171,12 +171,16 @@ def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
         raise FileError("is no run that can go on", path_text(path), remedy=remedy) from cause
 
 
-def _check_ending(out: Path | None, events: list[str] | None) -> None:
+def _check_out(out: Path | None, events: list[str] | None) -> list[str]:
+    """Check where a result is to be written; return what is said of a folder that is made."""
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
     if out is not None and out.suffix == ".csv" and events:
         what = f"{path_text(out)}, a table over time, has no place for events"
         raise UsageError(what, "--out", "a file ending in .nc")
+    if out is None or out.parent.exists():
+        return []
+    return [f"made the folder {path_text(out.parent)}"]
 
 
 @contextmanager

@@ -18,6 +18,10 @@ from piezo_sym.errors import PiezoError, UnknownNameError, UsageError, nearest, 
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
+#: The types of truth values, which Python and NumPy take for numbers.
+BOOLS = frozenset({bool, np.bool_})
+#: The functions whose checks others share.
+SHARED = re.compile(r"^(simulate|operating_point|periodic_steady_state)\.")
 #: The smallest duration, temperature or frequency: fractions of a smaller one underflow.
 LEAST = 1e-100
 #: The most lanes or samples: the results of more fit into no memory.
@@ -25,10 +29,10 @@ MOST = 100_000_000
 
 
 def is_number(value: object) -> bool:
-    """Return whether `value` is one real number; a bool is not."""
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        return value.dtype.kind in "iuf"
-    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
+    """Return whether `value` is one real number, or an array of one without axes; a bool is not."""
+    if getattr(value, "ndim", None) == 0:
+        return np.asarray(value).dtype.kind in "iuf"
+    return isinstance(value, Real) and type(value) not in BOOLS
 
 
 def number(value: object, where: str) -> float:
@@ -56,6 +60,7 @@ def positive(value: object, where: str) -> float:
 
 def integer(value: object, where: str, least: int, most: int = MOST) -> int:
     """Return `value` as an int from `least` to `most`; raise `UsageError` otherwise."""
+    value = np.asarray(value).item() if getattr(value, "ndim", None) == 0 else value
     if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
         what = f"{quote(value)} is not allowed"
         raise UsageError(what, where, f"a whole number >= {least}")
@@ -127,10 +132,15 @@ def known_keys(
 
 
 @contextmanager
-def calling(function: str) -> Iterator[None]:
-    """Make errors of shared checks name `function`, which the user called; also a decorator."""
+def calling(function: str, initial: str = "initial") -> Iterator[None]:
+    """Make errors of shared checks name `function`, which the user called; also a decorator.
+
+    `initial` is the name of its argument for a state.
+    """
     try:
         yield
     except PiezoError as error:
-        error.where = re.sub(r"^(simulate|operating_point)\.", f"{function}.", error.where)
+        error.where = SHARED.sub(f"{function}.", error.where)
+        error.where = error.where.replace(f"{function}.initial", f"{function}.{initial}")
+        error.remedy = error.remedy.replace("'initial'", f"'{initial}'")
         raise

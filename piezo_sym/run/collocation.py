@@ -44,6 +44,8 @@ MOST_STEPS = 1e12
 ORDERS = (2, 4, 6, 8, 10, 12)
 #: A step that ends closer than this, over its length, to a sample or a break ends there.
 ROUNDING = 1e-9
+#: A state [SI] beyond this size has grown without bound.
+GROWN = 1e100
 #: The least error that is estimated, over the noise of a state at rest.
 OVER_NOISE = 50.0
 
@@ -191,6 +193,12 @@ def _stuck_error(system: DrivenModule, t: float, x: FloatArray) -> RunError:
     if is_unproved(system.module):
         why = f"each step leaves the domain or consumes entropy, and the model is {UNPROVED}"
         remedy = "mend what `piezo-sym verify` refutes; or take method LSODA, which goes on"
+    elif np.max(np.abs(x)) > GROWN:
+        why = "it grows without bound"
+        remedy = "check the signs of laws: a spring pulls back by k*q, not by -k*q"
+    elif steep := system.overflowing(t, x):
+        why = f"the slopes of its laws by {listing(map(quote, steep))} overflow there"
+        remedy = "write laws in which no term does: 1/cosh(x)**2 may, 1 - tanh(x)**2 does not"
     names = [record.name for record in system.module.STATES]
     rows = system.rows(system.module.STATES)
     values = ", ".join(f"{n} = {x[row.start]:.6g}" for n, row in zip(names, rows, strict=True))

@@ -234,13 +234,15 @@ def read_outputs(module: GeneratedModule, outputs: object) -> tuple[str, ...]:
     for output in outputs:  # type: ignore[attr-defined]  # a vector
         matching = [name for name in names if output in (name, name.rpartition(".")[0])]
         if not matching:
-            remedy = _remedy(str(output), names)
-            raise UsageError(f"unknown name {quote(output)}", OUTPUTS, remedy=remedy)
+            remedy = element_remedy(str(output), names)
+            expected = "elements and their quantities, beside what every run has, as y_<port>"
+            raise UsageError(f"unknown name {quote(output)}", OUTPUTS, expected, remedy)
         wanted.update(matching)
     return tuple(name for name in names if name in wanted)
 
 
-def _remedy(output: str, names: tuple[str, ...]) -> str:
+def element_remedy(output: str, names: tuple[str, ...]) -> str:
+    """Return what to write for an unknown element or quantity of one: the known `names`."""
     element = output.rpartition(".")[0]
     known = [name.rpartition(".") for name in names]
     if quantities := [quantity for other, _, quantity in known if other == element]:

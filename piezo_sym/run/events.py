@@ -1,14 +1,15 @@
 """Events of a run: times at which expressions change sign, to round-off; and when it stops.
 
-Input: expressions in the language of laws over states, inputs, `y_<port>`, `T_<body>` and
-parameters, and a function that samples the run at any times.  Output: the times of each event, and
-when the run stops.
+Input: expressions in the language of laws over states, inputs, `y_<port>`, `T_<body>`,
+`<element>.<quantity>` and parameters, and a function that samples the run at any times.  Output:
+the times of each event, and when the run stops.
 
 A sample is a step of its own from the last accepted state, so more samples do not change the run:
 it is sampled at the user's times and four times per step, then again where signs change.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, Self, TypeAlias, final
@@ -19,9 +20,9 @@ from piezo_sym.errors import PiezoError, UsageError, nearest, quote
 from piezo_sym.expressions.exact_eval import evaluate
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Add, Expr, Neg, names
+from piezo_sym.expressions.tree import ZERO, Add, Call, Expr, Neg, names, rename
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.dataset import Evaluation, Trajectory, attributes
+from piezo_sym.run.dataset import Evaluation, Trajectory, attributes, element_remedy
 from piezo_sym.run.module import row_names
 from piezo_sym.run.system import DrivenModule
 
@@ -29,6 +30,11 @@ from piezo_sym.run.system import DrivenModule
 Sampler: TypeAlias = Callable[[FloatArray], tuple[FloatArray, Trajectory]]
 #: Samples to find changes of sign: per step, and the least and greatest number of them.
 PER_STEP, LEAST, MOST = 4, 1000, 20_000
+#: Words that join comparisons, which the language of laws does not have, and those of C.
+AND, OR = re.compile(r"\band\b|&&?"), re.compile(r"\bor\b|\|\|?")
+KNOWN = "a state, input, y_<port>, T_<body> or parameter"
+#: A quantity of an element, as `spring.effort`: no name of the language of laws.
+QUANTITY = re.compile(r"\b([A-Za-z_]\w*)\.([A-Za-z_]\w*)")
 #: Samples inside a bracket in one pass, and the most passes.
 EVEN, ROUNDS = 63, 16
 
@@ -78,42 +84,62 @@ def read_watched(system: DrivenModule, events: object, stop: object, step: objec
             why = ": the run has a quantity of that name" if name in {*known, "time"} else ""
             what = f"{quote(name)} cannot name an event{why}"
             raise UsageError(what, "simulate.events", "a new name of letters, digits and _")
-        laws[name] = _check_names(_event_law(text, where), known, where)
+        law = _parsed(parse_law, text, where, '"q - 1e-3"', "{}")
+        laws[name] = _check_names(law, known, where)
     if stop is None:
         return Watched(laws, None)
-    condition: Any = _parsed(parse_condition, stop, "simulate.stop", '"T_body > 350"')
-    _check_names(condition, known, "simulate.stop")
+    where = "simulate.stop"
+    margin = _parsed(_margin, stop, where, '"T_body > 350"', "{} > 0")
+    return Watched(laws, _check_names(margin, known, where), str(stop))
+
+
+def _margin(text: str, where: str) -> Expr:
+    """Return what is positive where a comparison holds."""
+    condition = parse_condition(text, where)
     sides = condition.left, condition.right
     more, less = sides if condition.op in {">", ">="} else sides[::-1]
-    return Watched(laws, Add((more, Neg(less))), str(stop))
+    return more if less == ZERO else Add((more, Neg(less)))
 
 
-def _event_law(text: object, where: str) -> Expr:
-    """Return the law of an event; the error of a comparison names the law to write instead."""
-    try:
-        law: Expr = _parsed(parse_law, text, where, '"q - 1e-3"')
-    except UsageError as error:
-        with suppress(PiezoError, TypeError):
-            sides = parse_condition(str(text), where)
-            error.remedy = f"write {quote(spell(Add((sides.left, Neg(sides.right)))))}"
-        raise
-    return law
+def _margin_of_several(text: str, where: str) -> Expr:
+    """Return what is positive where comparisons hold that are joined by 'and' or 'or'."""
+    for function, word in (("max", OR), ("min", AND)):
+        first, *more = word.split(text, maxsplit=1)
+        if more:
+            parts = (_margin_of_several(part, where) for part in (first, *more))
+            return Call(function, tuple(parts))
+    return _margin(text, where)
 
 
-def _parsed(read: Callable[[str, str], Any], text: object, where: str, such: str) -> Any:
+def _parsed(
+    read: Callable[[str, str], Expr], text: object, where: str, such: str, form: str
+) -> Expr:
+    """Return what is read of a text; the error of other comparisons has the text in this form."""
     if not isinstance(text, str):
         raise UsageError(f"{quote(text)} is no text", where, f"text such as {such}")
+    plain = QUANTITY.sub(r"_\1_\2", text)  # no spec has such names
+    spelled = {
+        f"_{element}_{word}": f"{element}.{word}" for element, word in QUANTITY.findall(text)
+    }
     try:
-        return read(text, where)
+        return rename(read(plain, where), spelled)
     except PiezoError as error:
-        raise UsageError(error.what, where, error.expected, error.remedy) from error
+        what, remedy = quote(text) + error.what.removeprefix(quote(plain)), error.remedy
+        with suppress(PiezoError):
+            margin = rename(_margin_of_several(plain, where), spelled)
+            remedy = f"write '{form.format(spell(margin))}'"
+        raise UsageError(what, where, error.expected, remedy) from error
 
 
-def _check_names(tree: Any, words: Sequence[str], where: str) -> Any:
+def _check_names(tree: Expr, words: Sequence[str], where: str) -> Expr:
     for name in names(tree):
         if name not in words:
-            what = f"the run has no {quote(name)}"
-            raise UsageError(what, where, remedy=nearest(name, words))
+            dotted = tuple(word for word in words if "." in word)
+            own = (word for word in words if word not in dotted)
+            remedy = element_remedy(name, dotted) if "." in name else nearest(name, own)
+            what = f"events and stop know no {quote(name)}"
+            expected = f"{KNOWN}, or a quantity of an element, such as '{dotted[0]}'"
+            raise UsageError(what, where, expected, remedy)
     return tree
 
 
@@ -125,22 +151,25 @@ def _quantity_names(system: DrivenModule) -> list[str]:
         *(f"y_{record.name}" for record in module.OUTPUTS),
         *(f"T_{record.name}" for record in module.BODIES),
         *(record.name for record in module.PARAMETERS if not record.bank),
+        *row_names(module.ELEMENTS, p),
     ]
 
 
-def _quantity_values(system: DrivenModule, trajectory: Trajectory) -> dict[str, list[float]]:
+def _quantity_values(
+    system: DrivenModule, wanted: Collection[str], trajectory: Trajectory
+) -> dict[str, list[float]]:
     module, p = system.module, system.parameters
     x, u = trajectory.states, trajectory.inputs
     fixed = [getattr(p, record.name) for record in module.PARAMETERS if not record.bank]
     values = [*x, *u, *module.outputs(x, u, p), *module.temperatures(x, p), *fixed]
-    spread = (np.broadcast_to(value, x.shape[1]).tolist() for value in values)
-    return dict(zip(_quantity_names(system), spread, strict=True))
+    values += [*module.elements(x, u, p)] if any("." in name for name in wanted) else []
+    named = zip(_quantity_names(system), values, strict=False)
+    return {n: np.broadcast_to(row, x.shape[1]).tolist() for n, row in named if n in wanted}
 
 
 def values_of(system: DrivenModule, tree: Expr, trajectory: Trajectory) -> FloatArray:
     """Return the values (nt,) of an expression at the samples of a run; nan where it has none."""
-    rows = _quantity_values(system, trajectory)
-    columns = {name: rows[name] for name in names(tree)}
+    columns = _quantity_values(system, [*names(tree)], trajectory)
     values = np.full(trajectory.states.shape[1], np.nan)
     for k in range(values.size):
         with suppress(ArithmeticError, ValueError):

@@ -89,6 +89,10 @@ def read_initial(
 ) -> FloatArray:
     """Return the state (n,) at t = 0, with inputs u (m,): the default, changed where given."""
     given = getattr(given, "initial", given)  # of an OperatingPoint
+    if hasattr(given, "data_vars"):
+        states = [record.name for record in module.STATES]
+        remedy = f"give {{name: run[name][-1] for name in {states}}}"
+        raise UsageError("a Dataset is no state", WHERE, "state -> value", remedy)
     if isinstance(given, Mapping):
         _refuse_single_lanes(module, parameters, given)
     names, places = [record.name for record in module.STATES], names_elsewhere(module, "initial")
@@ -175,18 +179,15 @@ def start_of(
         point = getattr(run, "parameters", None)  # of an OperatingPoint
         return start or 0.0, run, {**point, **(parameters or {})} if point else parameters
     model, sha256 = (str(run.attrs.get(key, "")) for key in ("model", "spec_sha256"))
-    if "time" not in run.dims or not model:
+    if "time" not in run.coords or not run.time.size or not model:
         raise UsageError("this Dataset is no run of simulate()", WHERE)
     if (model, sha256) != (module.NAME, module.SPEC_SHA256):
         what = f"this is a run of model {quote(model)}, spec {sha256[:12]}"
         expected = f"one of model '{module.NAME}', spec {module.SPEC_SHA256[:12]}"
         remedy = "give the run's own spec, and what has changed as parameters (--set)"
         raise UsageError(what, WHERE, expected, remedy if model == module.NAME else "")
-    last = run.isel(time=-1)
-    state: dict[str, Any] = {}
-    for record in module.STATES:
-        values = np.asarray(last[record.name].values, dtype=float)
-        state[record.name] = values if record.bank else float(values)
+    last = run.isel(time=-1) if run.time.ndim else run  # of one instant
+    state: dict[str, Any] = {record.name: last[record.name].values for record in module.STATES}
     used: dict[str, Any] = {}
     for name, value in run.attrs.items():
         if str(name).startswith(PARAMETER):

@@ -27,7 +27,7 @@ from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, checked
 from piezo_sym.run.parameters import LaneValue, read_parameters, sample_times, start_of
 from piezo_sym.run.planned import Request
-from piezo_sym.run.streaming import streamed
+from piezo_sym.run.streaming import check_memory, streamed
 
 if TYPE_CHECKING:
     import xarray
@@ -110,8 +110,8 @@ def simulate(
         body's temperature may stand for its entropy: {"T_body": 320.0}. Those left out keep the
         module's initial state. Stores that are joined have one state, the sum of theirs, with the
         ratios of what is between them: `show` says which. Or a Dataset
-        of this model: the run goes on from its last state, with its parameters but for those
-        given; integrals begin at 0 again.
+        of this model, or an instant of one, ``run.isel(time=-1)``: the run goes on from its last
+        state, with its parameters but for those given; integrals begin at 0 again.
     t0 : the time at which the run starts [s]; when left out, 0, or the last time of a Dataset.
     method : discrete_gradient when left out, or one of SciPy's: RK23, RK45, DOP853, Radau, BDF,
         LSODA. Left out, a module without C beside it runs by LSODA; and so does one whose C cannot
@@ -121,7 +121,8 @@ def simulate(
     events : name -> expression, such as ``{"hit": "q - 1e-3"}``: the times at which it changes its
         sign, to round-off, are the coordinate of that name, and `<quantity>_at_<name>` are the
         states, inputs, outputs and temperatures there. Expressions are texts in the language of
-        laws, of states (a lane as ``phi_1``), inputs, `y_<port>`, `T_<body>` and parameters, in SI.
+        laws, of states (a lane as ``phi_1``), inputs, `y_<port>`, `T_<body>`, parameters and what
+        `outputs` names (of a bank ``hysteron.effort_1``), in SI.
         They are evaluated at the samples and four times per step, 1,000 to 20,000 times in all: two
         changes between neighbouring times are not seen. Not with `step`.
     stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, with a sample
@@ -176,13 +177,13 @@ def simulate(
     start, state, given = start_of(module, t0, initial, parameters)
     check_resolved(start, length)
     samples = sample_times(times, step, length, start)
-    values = read_parameters(module, given)
-    chosen = choose_method(module, named, step)
+    values, chosen = read_parameters(module, given), choose_method(module, named, step)
     elements, slack = read_outputs(module, outputs), slack_of(initial, parameters)
     options = dissipative_start, progress, elements, slack
     request = Request(module, values, inputs, chosen, tolerance, fixed, *options)
     if store is not None:
         return streamed(request, start, samples, state, (events, stop), store)
+    check_memory(request, samples)
     planned = request.planned(start, length, state)
     return planned.dataset(samples, read_watched(planned.system, events, stop, step))
 

@@ -17,7 +17,7 @@ from typing import Any, NoReturn, final
 import numpy as np
 
 from piezo_sym.errors import PiezoError, UsageError, listing, quote
-from piezo_sym.run.checks import FloatArray, calling, integer, is_number, number, positive, vector
+from piezo_sym.run.checks import BOOLS, FloatArray, calling, integer, number, positive, vector
 from piezo_sym.run.collocation import read_order
 from piezo_sym.run.engine.batch import Stepping
 from piezo_sym.run.engine.engine import engine_of
@@ -205,6 +205,8 @@ class Stepper:
         try:
             if self._direct:
                 self._put(self._buffer, 0, *u)
+                if not BOOLS.isdisjoint(map(type, u)):
+                    raise TypeError("struct takes True")
             else:
                 self._queue(u)
             if failed := self._once(self._at):
@@ -221,7 +223,7 @@ class Stepper:
         size = len(self._late)
         stored = self._late[(self._taken + size - 1) % size]  # written again if this call fails
         for row, value in zip(stored.T, u, strict=True):
-            if isinstance(value, str) or not (self._many or is_number(value)):
+            if np.ndim(value) > self._many or np.asarray(value).dtype.kind not in "iuf":
                 raise TypeError("NumPy would take '1' and True, too")
             row[:] = value
         if size > 1:  # C checks those that act
@@ -277,8 +279,7 @@ class Stepper:
         if isinstance(u, Sequence) and not isinstance(u, str) and len(u) == len(self.inputs):
             self._check(u)
         expected = f"a list, in this order, of one number each for {', '.join(self.inputs)}"
-        if self._many:
-            expected += f", or {len(self._plants)} numbers, one per plant"
+        expected += f", or {len(self._plants)} numbers, one per plant" * self._many
         return UsageError("these are no inputs", "Stepper.step", expected)
 
     def _check(self, u: Sequence[float | FloatArray] | FloatArray) -> None:

@@ -33,8 +33,10 @@ if TYPE_CHECKING:
 WHERE = "simulate.store"
 #: Signals that end a process.
 ENDINGS = (signal.SIGINT, signal.SIGTERM)
-#: The most numbers in a window, and those of a sample per state, port and process.
-WINDOW, PER_ROW = 4_000_000, 6
+#: The most numbers in a window, and those of a sample of time, energy, entropy and residuals.
+WINDOW, BALANCES = 4_000_000, 5
+#: The most numbers of a run in memory: 8 GB.
+MOST = 1_000_000_000
 #: Prefixes of integrals, and the suffix of residuals, which are continued as well.
 SUMS, RESIDUAL = ("supplied_", "heat_", "produced_", "entropy_exchanged_"), "_residual"
 #: Attributes that are added up over windows.
@@ -86,11 +88,26 @@ def streamed(
 
 def _windows(request: Request, samples: FloatArray) -> Iterator[FloatArray]:
     """Yield the sample times of each window, which begins with the last of the one before."""
-    rows = row_count(request.module.STATES, request.parameters) + len(request.module.OUTPUTS)
-    rows += row_count(request.module.ELEMENTS, request.parameters) if request.outputs else 0
-    most = max(2, WINDOW // (PER_ROW * rows))
+    most = max(2, WINDOW // _numbers(request))
     for first, last in pairwise([*range(0, samples.size - 1, most), samples.size - 1]):
         yield samples[first : last + 1]
+
+
+def _numbers(request: Request) -> int:
+    """Return how many numbers there are in a sample of a run."""
+    module = request.module
+    kinds = [module.STATES, module.INPUTS, module.BODIES, *3 * [module.OUTPUTS]]
+    kinds += [*2 * [module.PROCESSES], *[module.ELEMENTS] * bool(request.outputs)]
+    return BALANCES + sum(row_count(kind, request.parameters) for kind in kinds)
+
+
+def check_memory(request: Request, samples: FloatArray) -> None:
+    """Raise `UsageError` if a run needs a store, as it has too many numbers for the memory."""
+    numbers = _numbers(request)
+    if samples.size * numbers > MOST:
+        what = f"a run of {samples.size:,} samples takes {8e-9 * samples.size * numbers:.0f} GB"
+        remedy = "take fewer, or write them to a file as it goes: store='run.zarr' (--out run.zarr)"
+        raise UsageError(what, "simulate.times", f"at most {MOST // numbers:,} in memory", remedy)
 
 
 def _new_store(store: object) -> Path:

@@ -93,6 +93,16 @@ class DrivenModule:
         with np.errstate(all="ignore"):
             return np.isfinite(self.module.rhs(x, u, self.parameters))
 
+    def overflowing(self, t: float, x: FloatArray) -> tuple[str, ...]:
+        """Return the names of states by which slopes of rates are no finite numbers, at t [s]."""
+        if x.size > MOST_QUIET:
+            return ()
+        u = self.inputs.at_samples(np.array([t]))[:, 0]
+        with np.errstate(all="ignore"):
+            finite = np.isfinite(self.module.jacobian(x, u, self.parameters))
+        states = zip(self.module.STATES, self.rows(self.module.STATES), strict=True)
+        return tuple(state.name for state, row in states if not finite[:, row].all())
+
     def rates(self, x: FloatArray, u: FloatArray) -> FloatArray:
         """Return the rates of the ledger, (ports + 2 processes + exchanges, *batch).
 

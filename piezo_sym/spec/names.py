@@ -49,7 +49,8 @@ def check_name(word: str, where: str) -> str:
     if not NAME.fullmatch(word) or len(word) > MAX_NAME:
         what = f"{quote(word)} is not a name"
         expected = f"a letter, then letters, digits or '_' (not last), at most {MAX_NAME} in all"
-        raise SpecError(what, where, expected, "rename it")
+        remedy = "rename it" + " in plain ASCII" * (not word.isascii())
+        raise SpecError(what, where, expected, remedy)
     if word.lower() in DEVICES:
         what = f"{quote(word)} is a device on some systems, and names become files"
         raise SpecError(what, where, remedy=f"call it '{word}1'")

@@ -23,7 +23,7 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, TypeAlias
 
-from piezo_sym.errors import RunError, UsageError, one_line
+from piezo_sym.errors import RunError, UsageError, legible
 from piezo_sym.modules import module_of
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.sweeps.plan import Plan, Region
@@ -94,7 +94,7 @@ def pickled(plan: Plan, model: Model) -> bytes:
     try:
         return bytes(pickler.dumps((plan, model)))
     except Exception as cause:  # pickling runs the code of a user's objects
-        what = f"a function or value cannot be sent to another process: {one_line(str(cause))}"
+        what = f"a function or value cannot be sent to another process: {legible(str(cause))}"
         remedy = "define functions in a module of their own, or `pip install cloudpickle`"
         raise UsageError(what, "sweep.executor", remedy=remedy) from cause
 
@@ -122,7 +122,7 @@ def results(
         while pending:
             yield from completed(pending)
     except BrokenExecutor as cause:
-        what = f"a process of the executor died: {one_line(str(cause))}"
+        what = f"a process of the executor died: {legible(str(cause))}"
         remedy = "with store=..., start again: what is done is kept"
         raise RunError(what, "sweep.executor", remedy=remedy) from cause
     finally:

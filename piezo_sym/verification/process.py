@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 #: Seconds for a system of up to SMALL elements, and for each element more.
 PATIENCE, MORE_PATIENCE, SMALL = 28.0, 1.0, 10
+#: The most that these seconds are stretched on a machine where processes wait for a processor.
+MOST_CROWDED = 4.0
 #: Systems of fewer elements are read back sooner than a copy of a process pays: it takes 0.2 s of
 #: work, as every page that it touches is copied.
 FEWEST_BESIDE = 12
@@ -113,7 +115,7 @@ def _report(subject: IPHS | Model, texts: Future[Template]) -> Report:
 
     model = subject if isinstance(subject, Model) else subject.model
     limit = PATIENCE + MORE_PATIENCE * max(0, len(model.elements) - SMALL)
-    record, ends = Record(model.name, limit), monotonic() + limit
+    record, ends = Record(model.name, limit), monotonic() + limit * crowding()
     while True:
         stop: Stop | PiezoError | None = None
         request = Request(subject, ends - monotonic(), record.late, record.known)
@@ -128,6 +130,15 @@ def _report(subject: IPHS | Model, texts: Future[Template]) -> Report:
             raise stop
         if stop is None or not record.goes_on(stop):
             return record.report()
+
+
+def crowding() -> float:
+    """Return how many times longer work takes than on a machine that does nothing else."""
+    try:
+        waiting = os.getloadavg()[0] / (os.cpu_count() or 1)
+    except OSError:  # this system does not say
+        return 1.0
+    return min(max(1.0, waiting), MOST_CROWDED)
 
 
 def messages(worker: Worker, request: Request) -> Iterator[Any]:

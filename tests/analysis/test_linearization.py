@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import StateSpace
 
-from piezo_sym import linearize, load, operating_point
-from piezo_sym.errors import RunError, UsageError
+from piezo_sym import Stepper, linearize, load, operating_point, simulate
+from piezo_sym.errors import PiezoError, RunError, UsageError
 from piezo_sym.modules import module_of
 from piezo_sym.spec.load import parse
 from tests.networks.test_acceptance import SPECS
@@ -115,6 +115,40 @@ def test_what_has_no_linear_model_says_so() -> None:
         linearize("piezo_stack", inputs={"V_im": 3.0})
     with pytest.raises(RunError, match="no derivative there"):
         linearize("piezo_stack", at={"S": 0.0})
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"at": {"F_ext": 1.0}}, "linearize.at: unknown name 'F_ext'; give it in 'inputs'"),
+        ({"at": {"phi": [1.0, 2.0, 3.0]}}, "linearize.at.phi: 3 values for 2 lanes"),
+        ({"inputs": {"q": 1.0}}, "linearize.inputs: unknown name 'q'; give it in 'at'"),
+        ({"parameters": {"q": 1.0}}, "linearize.parameters: unknown name 'q'; give it in 'at'"),
+        ({"parameters": {"T_0": -1.0}}, "give another as 'at', or other inputs or parameters"),
+    ],
+)
+def test_messages_name_its_own_arguments(given, said) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(PiezoError) as error:
+        linearize("piezo_stack", **given)
+    assert said in str(error.value)
+    assert "initial'" not in str(error.value)
+
+
+def test_a_run_is_no_state_but_has_one() -> None:
+    run = simulate("piezo_stack", inputs={"V_in": 100.0}, duration=1e-3, times=2)
+    for refuses in (lambda at: linearize("piezo_stack", at=at), rests, steps):
+        with pytest.raises(UsageError, match="a Dataset is no state") as error:
+            refuses(run)
+        state = eval(error.value.remedy.removeprefix("give "), {"run": run})
+        refuses(state)
+
+
+def rests(initial: object) -> object:
+    return operating_point("piezo_stack", initial=initial)
+
+
+def steps(initial: object) -> object:
+    return Stepper("piezo_stack", step=1e-5, initial=initial)
 
 
 def _words(records: tuple) -> list[str]:  # type: ignore[type-arg]

@@ -4,6 +4,18 @@ import pytest
 
 from tests.conftest import full_disk
 
+CSV = "zeit [s],größe,b [V]\n0,1,2\n1,2,3\n"
+
+
+def test_text_of_the_user_is_shown_as_it_is_written(refused, tmp_path):
+    (tmp_path / "Kräfte.csv").write_text(CSV, encoding="utf-8")
+    drive = f"V_in=@{tmp_path / 'Kräfte.csv'}"
+    message = refused("simulate", "piezo_stack", "--duration", "1", "--input", drive)
+    assert "Kräfte.csv' has no column 'V_in' beside its times; columns: zeit, größe, b" in message
+    message = refused("simulate", "piezo_stack", "--duration", "1", "--set", "λ\x1b=1")
+    assert "unknown name 'λ\\x1b'" in message
+
+
 LAWS = ["__import__('os').system('touch canary')", "9**9**9", "exp(", "v if v else 0", "\\uff34"]
 EDITS = {
     "text": [('"d*v"', f'"{law}"', "elements.damper.force") for law in LAWS],

@@ -53,6 +53,21 @@ def test_an_input_that_no_element_uses_is_said_to_be_so(call, spec_file):
     assert unused.split() == ["F_2", "N", "0", "pull", "(no", "element", "uses", "it)"]
 
 
+def test_a_parameter_that_no_law_uses_is_said_to_be_so(call, spec_file):
+    """A condition on it does not use it; an initial value does."""
+    new = """[parameters]
+F_2 = { value = 1.0, unit = "N", doc = "pull" }
+q_2 = { value = 1.0, unit = "m" }"""
+    path = spec_file("[parameters]", new)
+    text = path.read_text(encoding="utf-8").replace('"d >= 0"', '"d >= 0", "F_2 > 0"')
+    path.write_text(text.replace("[initial]", '[initial]\nq = "q_2"'), encoding="utf-8")
+    answer = call("show", path)
+    assert answer.code == 0
+    (unused,) = (line for line in answer.out.splitlines() if "no law uses" in line)
+    assert unused.split() == ["F_2", "1", "N", "pull", "(no", "law", "uses", "it)"]
+    assert "no law uses" not in call("show", "piezo_stack").out
+
+
 def test_the_domain_says_what_needs_a_condition_that_no_one_wrote(call, spec_file):
     out = call("show", spec_file("deadzone(i, i_0)", "deadzone(i, i_0*(2 - T/T_0))")).out
     domain = out.split("\nDomain\n")[1].split("\n\n")[0].splitlines()

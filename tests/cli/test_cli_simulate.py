@@ -550,3 +550,12 @@ def test_events_are_printed_however_often_they_happen(call, event, hits):
     assert answer.code == 0
     assert f"event hit, {hits} in all" in answer.out
     assert ("q_at_hit" in answer.out) == bool(hits)  # rows without values are left out
+
+
+@pytest.mark.parametrize("ending", ["nc", "csv", "zarr"])
+def test_a_folder_that_is_made_is_said(call, tmp_path, ending):
+    path = tmp_path / "new" / f"run.{ending}"
+    said = f"made the folder '{path.parent}'"
+    assert call(*SHORT, "--out", path).out.splitlines()[-2:] == [said, str(path)]
+    assert path.exists()
+    assert "made the folder" not in call(*SHORT, "--out", path.with_stem("again")).out

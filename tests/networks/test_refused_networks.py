@@ -1,5 +1,7 @@
 """Nodes and references drawn wrongly: each refusal names the culprit and says what to do."""
 
+import re
+
 import pytest
 from drawing import (
     BODY,
@@ -23,6 +25,7 @@ from drawing import (
 
 from piezo_sym import cli
 from piezo_sym.errors import NetworkError, SpecError
+from piezo_sym.spec.load import parse
 
 NODES = {
     "a node that one element uses": (
@@ -218,3 +221,27 @@ def test_on_the_command_line_a_refusal_is_one_line(name, command, tmp_path, monk
     assert err.count("\n") == 1
     assert NODES[name][1] in err
     assert [path.name for path in tmp_path.iterdir()] == ["mine.toml"]
+
+
+BODILESS = """
+[model]
+name = "bodiless"
+[parameters]
+R = { value = 1.0, unit = "ohm" }
+C = { value = 1.0, unit = "F" }
+[elements]
+store = { kind = "capacitor", between = ["a", "gnd"], capacitance = "C" }
+loss = { kind = "resistor", between = ["a", "gnd"], voltage = "R*i", heats = "core" }
+"""
+
+
+@pytest.mark.parametrize("known", ["", 'T_0 = { value = 293.15, unit = "K" }\n'])
+def test_the_body_that_a_remedy_adds_is_one(known):
+    text = BODILESS.replace("R =", f"{known}R =")
+    with pytest.raises(SpecError) as error:
+        parse(text)
+    remedy = str(error.value)
+    body, more = re.search(r"to \[elements\]: (.*); and to \[parameters\]: (.*)$", remedy).groups()
+    assert ("T_0" in more) == (not known)
+    text = text.replace("R =", "\n".join([*more.split(" and "), "R ="]), 1)
+    assert parse(text + body).elements["core"].kind == "thermal_mass"

@@ -203,3 +203,25 @@ def test_a_run_that_crawls_towards_the_edge_ends_there(rtol):
     """Steps of one digit of the time succeed there: some 10^15 would be needed."""
     with ended_after(120), pytest.raises(RunError, match=r"leaves the domain at t = 0\.01526"):
         piezo_sym.simulate(parse(MAGNET), duration=0.02, rtol=rtol)
+
+
+PUSHED = """
+[model]
+name = "pushed"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+k = { value = 4.0, unit = "N/m" }
+[initial]
+q = 1.0
+[elements]
+spring = { kind = "spring", between = ["tip", "wall"], force = "-k*q", state = "q" }
+mass = { kind = "mass", at = "tip", mass = "m" }
+"""
+
+
+@pytest.mark.filterwarnings("ignore:(overflow|invalid value) encountered:RuntimeWarning")
+def test_a_run_that_grows_without_bound_is_told_to_check_signs():
+    with pytest.raises(RunError) as error:
+        piezo_sym.simulate(parse(PUSHED), duration=1000.0)
+    assert "it grows without bound; check the signs of laws" in str(error.value)
+    assert "domain" not in str(error.value)

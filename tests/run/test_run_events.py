@@ -71,7 +71,12 @@ def test_an_input_that_jumps_is_an_event():
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"events": {"hit": "phi - 1"}}, "simulate.events.hit: the run has no 'phi'"),
+        ({"events": {"hit": "phi - 1"}}, "simulate.events.hit: events and stop know no 'phi'"),
+        ({"stop": "heat_damper > 1"}, "quantity of an element, such as 'spring.effort'"),
+        ({"stop": "spring.force > 1"}, "'spring.force'; expected a state, input, y_<port>"),
+        ({"stop": "spring.force > 1"}, "'spring' has effort, flow, power, energy"),
+        ({"stop": "sprin.effort > 1"}, "did you mean 'spring.effort'?"),
+        ({"stop": "spring.effort > 1 +"}, "simulate.stop: 'spring.effort > 1 +' "),
         ({"events": {"hit": "q.real"}}, "simulate.events.hit"),
         ({"events": {"hit": "__import__('os')"}}, "simulate.events.hit"),
         ({"events": {"q": "p"}}, "'q' cannot name an event"),
@@ -119,6 +124,50 @@ def test_a_run_goes_on_where_another_ended(options, tmp_path):
     assert (changed.attrs["parameter_d"], changed.time[0]) == (1.0, 0.0)
 
 
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("q > 0.5 and p > 0", "min(q - 0.5, p)"),
+        ("(q > 0.5) and (0 >= p)", "min(q - 0.5, 0 - p)"),
+        ("q > 0.5 && p > 0 || T_body < 3", "max(min(q - 0.5, p), 3 - T_body)"),
+        ("spring.effort > 1 | p > 1 | q > 1", "max(spring.effort - 1, max(p - 1, q - 1))"),
+    ],
+)
+def test_several_conditions_are_told_the_law_to_write(text, meant):
+    for given, form in (({"stop": text}, "{} > 0"), ({"events": {"hit": text}}, "{}")):
+        with pytest.raises(UsageError) as error:
+            simulate("piezo_stack", duration=1e-3, **given)
+        said = form.format(meant)
+        assert error.value.remedy == f"write '{said}'"
+        again = {"stop": said} if "stop" in given else {"events": {"hit": said}}
+        simulate("piezo_stack", duration=1e-4, **again)
+
+
+@pytest.mark.parametrize("store", [False, True])
+def test_quantities_of_elements_are_watched(store, tmp_path):
+    at = {"store": tmp_path / "run.zarr"} if store else {}
+    laws = {"by_name": "spring.effort - 2", "by_law": "k*(q - q_l) - 2", "lane": "hysteron.heat_2"}
+    given = {"inputs": {"V_in": 100.0}, "duration": 0.01, "parameters": {"d": 300.0}}
+    run = simulate("piezo_stack", events=laws, stop="damper.heat < -1", **given, **at)
+    assert run.by_name.size > 0
+    assert np.array_equal(run.by_name, run.by_law)
+    ended = simulate("piezo_stack", stop="spring.effort > 2", **given)
+    assert ended.time[-1] == run.by_name[0]
+    assert ended.attrs["stopped"].startswith("spring.effort > 2 at t = ")
+
+
+def test_an_instant_of_a_run_is_a_start():
+    given = {"inputs": DRIVE, "parameters": {"d": 300.0, "L": [1e-3, 2e-3]}}
+    first = simulate("piezo_stack", duration=0.01, **given)
+    goes_on = {"duration": 0.01, "inputs": DRIVE}
+    whole = simulate("piezo_stack", initial=first, **goes_on)
+    end = simulate("piezo_stack", initial=first.isel(time=-1), progress=True, **goes_on)
+    assert end.identical(whole)  # to the bit, with its parameters
+    middle = simulate("piezo_stack", initial=first.isel(time=500), **goes_on)
+    assert middle.time[0] == first.time[500]
+    assert np.array_equal(middle.phi[0], first.phi[500])
+
+
 @pytest.mark.filterwarnings("ignore:.generated/piezo_stack. is not what")
 def test_a_run_of_another_model_is_refused():
     other = simulate(OSCILLATOR, duration=1.0)
@@ -128,8 +177,11 @@ def test_a_run_of_another_model_is_refused():
     run = simulate("piezo_stack", duration=1e-3)
     with pytest.raises(UsageError, match="expected one of model 'piezo_stack', spec"):
         simulate(load_text(changed), duration=1e-3, initial=run)
-    with pytest.raises(UsageError, match="no run of simulate"):
-        simulate("piezo_stack", duration=1e-3, initial=xarray.Dataset())
+    with pytest.raises(UsageError, match="expected one of model 'piezo_stack', spec"):
+        simulate(load_text(changed), duration=1e-3, initial=run.isel(time=-1))
+    for none in (xarray.Dataset(), run.isel(time=[]), run.drop_vars("time")):
+        with pytest.raises(UsageError, match="no run of simulate"):
+            simulate("piezo_stack", duration=1e-3, initial=none)
 
 
 def load_text(text: str):

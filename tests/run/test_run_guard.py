@@ -5,6 +5,7 @@ from math import log
 import numpy as np
 import pytest
 
+import piezo_sym
 from piezo_sym import ramp, step
 from piezo_sym.errors import RunError
 from piezo_sym.run import simulate
@@ -138,6 +139,39 @@ def test_solver_that_cannot_go_on(store, variant, method):
     text = message(blow_up, initial={"x": 1.0}, duration=2.0, method=method)
     assert f"model 'store': solver {method} cannot go on from t = " in text
     assert time_in(text) == pytest.approx(1.0, abs=1e-3)
+
+
+STEEP = """
+[model]
+name = "steep"
+title = "A spring that saturates, drawn far"
+[parameters]
+E_0 = { value = 1.0, unit = "J" }
+k = { value = 1.0, unit = "N/m" }
+m = { value = 1.0, unit = "kg" }
+w = { value = 1.0, unit = "mm" }
+[inputs]
+F = { unit = "N" }
+[domain]
+assume = ["w > 0"]
+[elements.spring]
+kind = "spring"
+between = ["tip", "wall"]
+state = "q"
+energy = "k*q**2/2 + E_0*(1 - 1/cosh(q/w))**2"
+[elements]
+mass = { kind = "mass", at = "tip", mass = "m", state = "p" }
+load = { kind = "force_source", at = "tip", input = "F" }
+"""
+
+
+def test_slopes_that_overflow_are_named(tmp_path):
+    """A fourth power of cosh is no number from 178 on, though no law jumps there."""
+    (tmp_path / "steep.toml").write_text(STEEP, encoding="utf-8")
+    with pytest.raises(RunError) as error:
+        piezo_sym.simulate(tmp_path / "steep.toml", inputs={"F": 1000.0}, duration=1.0)
+    assert "the slopes of its laws by 'q' overflow there" in str(error.value)
+    assert "sign" not in str(error.value)
 
 
 def test_what_was_left_before_the_solver_failed_is_said_first(store, variant):

@@ -124,7 +124,9 @@ def test_a_list_takes_elements_and_single_quantities():
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (["sprin"], "unknown name 'sprin'; did you mean 'spring'?"),
+        (["sprin"], "unknown name 'sprin'; expected elements and their quantities"),
+        (["sprin"], "did you mean 'spring'?"),
+        (["y_load"], "elements and their quantities, beside what every run has, as y_<port>"),
         (["damper.heta"], "'damper' has effort, flow, power, heat"),
         (["springs.flow"], "did you mean 'spring.flow'?"),
         (["spring.q"], "'spring' has effort, flow, power, energy"),

@@ -1,9 +1,11 @@
 """Calls of `simulate` that are wrong: each is refused with a line that names the place."""
 
+import re
 from math import inf, nan
 
 import numpy as np
 import pytest
+import xarray
 
 import piezo_sym
 from piezo_sym import samples, sweep
@@ -139,6 +141,26 @@ def test_numbers_of_numpy_are_numbers(piezo):
     assert np.array_equal(ds.F_ext, [3, 3, 3])
 
 
+def test_numbers_of_a_run_are_numbers():
+    """As 0-d DataArrays, which indexing gives: in all arguments of all functions."""
+    run = piezo_sym.simulate("piezo_stack", inputs={"V_in": 100.0}, duration=1e-3, times=2)
+    point = {"inputs": {"V_in": run.V_in[-1]}, "parameters": {"d": xarray.DataArray(300.0)}}
+    point["parameters"]["hysteron_count"] = xarray.DataArray(3)
+    start = {"q": run.q[-1], "T_body": run.T_body[-1]}
+    given = {"initial": start, "duration": run.time[-1], "times": 2}
+    again = piezo_sym.simulate("piezo_stack", **point, **given)
+    assert again.V_in[0] == 100.0
+    assert again.attrs["parameter_d"] == 300.0
+    assert again.sizes["hysteron"] == 3
+    assert again.q[0] == run.q[-1]
+    assert again.T_body[0] == pytest.approx(float(run.T_body[-1]), rel=1e-15)
+    assert piezo_sym.operating_point("piezo_stack", **point).inputs["V_in"] == 100.0
+    assert piezo_sym.Stepper("piezo_stack", step=1e-5, initial=start, **point).x[0] == run.q[-1]
+    wrong = {"inputs": {"V_in": xarray.DataArray(True)}}
+    with pytest.raises(UsageError, match=r"simulate.inputs.V_in"):
+        piezo_sym.simulate("piezo_stack", duration=1e-3, **wrong)
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [
@@ -158,6 +180,20 @@ def test_sizes_beyond_any_memory_are_refused(options, said):
         with pytest.raises(UsageError) as error:
             run("piezo_stack", duration=1e-3, **options)
         assert said in str(error.value)
+
+
+def test_a_run_too_large_for_the_memory_is_told_to_take_a_store():
+    """How large a sample is, is counted."""
+    few = piezo_sym.simulate("piezo_stack", duration=1e-3, times=1000, outputs="all")
+    size = few.nbytes / 1000
+    with pytest.raises(UsageError) as error:
+        piezo_sym.simulate("piezo_stack", duration=1e-3, times=10**8, outputs="all")
+    said = str(error.value)
+    assert "simulate.times: a run of 100,000,000 samples takes" in said
+    assert "store='run.zarr' (--out run.zarr)" in said
+    assert float(re.search(r"takes (\d+) GB", said)[1]) == pytest.approx(size / 10, rel=0.1)
+    most = int(re.search(r"at most ([\d,]+) in memory", said)[1].replace(",", ""))
+    assert most * size == pytest.approx(8e9, rel=0.1)
 
 
 def test_a_hundred_thousand_hysterons_run():

@@ -64,6 +64,18 @@ def test_parameters_and_starts_are_those_given():
     assert actuator.x[0] == 1e-3
 
 
+@pytest.mark.parametrize("wrong", [True, np.True_])
+@pytest.mark.parametrize("given", [{}, {"delay": 1}, {"parameters": [{}, {}]}])
+def test_a_truth_value_is_no_input(wrong, given):
+    actuator = Stepper("piezo_stack", step=H, **given)
+    before = held(actuator)
+    with pytest.raises(UsageError, match=r"step: input 'V_in': .*True.* is not a finite"):
+        actuator.step([0.0, wrong, 298.15])
+    with pytest.raises(UsageError, match="one number each for F_ext"):
+        actuator.step(np.array([False, wrong, True]))
+    assert held(actuator) == before
+
+
 @pytest.mark.parametrize("wrong", ["1", True, [1]])
 def test_what_is_no_number_is_refused_before_a_delay(wrong):
     late = Stepper("piezo_stack", step=H, delay=2)

@@ -40,7 +40,7 @@ def fault(read, text, kind) -> str:
         found = read(text)
     except PiezoError as error:
         message = str(error)
-        good = message.isascii() and message.isprintable() and len(message) < 800
+        good = message.isprintable() and len(message) < 800
         good = good and error.exit_code == 2 and bool(error.where)
         return "" if good else f"message {message[:200]!r}"
     except BaseException as error:  # anything else is what is looked for

@@ -75,7 +75,7 @@ def mend(text: str, message: str) -> str:
     if found := re.search(r"declare it in \[inputs\]: (.*)$", message):
         return text.replace("[inputs]\n", f"[inputs]\n{found[1]}\n")
     if found := re.search(r"'([^']+)' is not ASCII; expected a unit; write '([^']+)'", message):
-        return text.replace(found[1].encode().decode("unicode_escape"), found[2])
+        return text.replace(found[1], found[2])
     if found := re.search(r"parameters\.(\w+)\.unit: .*; give it in K: ([\d.]+)", message):
         line = rf"(?m)^{found[1]} .*?= \{{ value = [^,]+, +unit = \"[^\"]+\""
         return re.sub(line, f'{found[1]} = {{ value = {found[2]}, unit = "K"', text)

@@ -93,7 +93,7 @@ NOT_NAMES = [
 @pytest.mark.parametrize("check", [check_name, check_symbol])
 @pytest.mark.parametrize("word", NOT_NAMES, ids=ascii)
 def test_words_that_are_no_names(check, word):
-    assert str(refusal(check, word, "model.name")).endswith(f"is not a name; {SHAPE}")
+    assert f"is not a name; {SHAPE}" in str(refusal(check, word, "model.name"))
 
 
 @pytest.mark.parametrize("word", ["con", "NUL", "Com1", "lpt9"])
@@ -164,7 +164,13 @@ def test_a_states_name_is_checked():
 
 def test_a_greek_look_alike_in_a_spec_is_refused():
     message = refused_edit(("[inputs]", '"\u039c" = { value = 1, unit = "kg" }\n[inputs]'))
-    assert "'\\u039c' is not a name" in message
+    assert "'\u039c' is not a name; " in message
+    assert message.endswith("rename it in plain ASCII")
+
+
+def test_a_name_is_shown_as_it_is_written_but_for_what_does_not_print():
+    message = refused_edit(('"piezo_stack"', '"Gr\u00f6\u00dfe\\u202e\\u0007"'))
+    assert "model.name: 'Größe\\u202e\\x07' is not a name" in message
 
 
 def test_an_elements_name_is_checked():

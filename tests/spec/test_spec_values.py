@@ -58,11 +58,7 @@ def test_starts_that_are_no_numbers(value):
 @pytest.mark.parametrize(
     ("name", "old", "new", "condition"),
     [
-        ("M", "value = 3.5e-3", "value = 0", "M > 0"),
-        ("M", "value = 3.5e-3", "value = -1", "M > 0"),
-        ("C", "value = 5e-6", "value = 0", "C > 0"),
         ("L", "value = 1e-3", "value = 0", "L > 0"),
-        ("k", "value = 5e5", "value = -5e5", "k > 0"),
         ("d", "value = 4e2", "value = -1", "d >= 0"),
         ("rho", 'value = 10.0,   unit = "ohm', 'value = -10.0, unit = "ohm', "rho >= 0"),
         ("i_0", "value = 0.5", "value = -0.5", "i_0 >= 0"),
@@ -73,6 +69,22 @@ def test_values_outside_the_domain(name, old, new, condition):
     message = refused_edit((old, new))
     assert f"the values given are outside the domain: {name} = " in message
     assert f"expected '{condition}'; change a value or the domain" in message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "condition", "size"),
+    [
+        ("value = 3.5e-3", "value = 0", "M > 0", "mass"),
+        ("value = 3.5e-3", "value = -1", "M > 0", "mass"),
+        ("value = 5e-6", "value = 0", "C > 0", "capacitance"),
+        ("value = 5e5", "value = -5e5", "k > 0", "stiffness"),
+        ('stiffness = "k"', 'stiffness = "-k"', "-k > 0", "stiffness"),
+    ],
+)
+def test_a_store_of_the_wrong_sign_is_told_so(old, new, condition, size):
+    message = refused_edit((old, new))
+    assert "the values given are outside the domain" in message
+    assert message.endswith(f"expected '{condition}'; check its sign: {size} has to be above 0")
 
 
 @pytest.mark.parametrize(

@@ -55,6 +55,16 @@ def test_what_is_not_decided_in_time_is_open(monkeypatch):
     assert "not decided in 0.01 s" in report.rows[0].reason
 
 
+@pytest.mark.parametrize(("waiting", "times"), [(0.2, 1.0), (2.5, 2.5), (50.0, 4.0)])
+def test_a_busy_machine_is_given_more_time(waiting, times, monkeypatch):
+    """What is decided depends as little as can be on what else the machine does."""
+    asked = []
+    monkeypatch.setattr(os, "getloadavg", lambda: (waiting * (os.cpu_count() or 1), 0.0, 0.0))
+    monkeypatch.setattr(process, "messages", lambda _, request: asked.append(request) or [])
+    examined(load("oscillator"))
+    assert asked[0].seconds == pytest.approx(28.0 * times, abs=1.0)
+
+
 def test_an_error_of_the_derivation_comes_back_as_it_is(examiner):
     broken = parse(
         MASS.format(parameters="", domain="", elements="", force="m*v*0").replace(

@@ -18,7 +18,7 @@ enum { ROUGH_ITERATIONS = 8 };
 /* Accuracy of rates that only serve to locate a switch, as a fraction of the tolerance. */
 #define SKETCH 0.01
 /* Accuracy of rates whose residuals become heat, as a fraction of the tolerance. */
-#define RESIDUAL 1e-2
+#define RESIDUAL 3e-2
 /* With at least this many switches it may be better to step over kinks. */
 enum { MANY = 8 };
 /* Accuracy of a survey's steps, and the shortest of them, as a fraction of the longest. */
@@ -44,6 +44,9 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
 #define PLACE(array, size) (b->array = memory ? memory + at : NULL, at += (size))
     PLACE(rate, m->n);
     PLACE(side, m->branches);
+    PLACE(after, m->branches);
+    PLACE(tried, m->branches);
+    PLACE(tried_error, m->branches);
     PLACE(sums, m->booked);
     PLACE(lost, m->booked);
     PLACE(known, STAGES * m->n);
@@ -128,9 +131,11 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     LANE(&m->iterations, 0, lane) = (double)run->iterations;
     b->lane[lane] = (MODEL(lane)){.run = run, .segment = run->segments, .t = run->t, .phase = BEGIN};
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
-    b->lane[lane].steady = HUGE_VAL;
+    b->lane[lane].steady = b->lane[lane].ahead = HUGE_VAL;
     b->lane[lane].kept = -HUGE_VAL;
-    b->lane[lane].which = -1;
+    b->lane[lane].which = b->lane[lane].turned = -1;
+    for (long k = 0; k < m->branches; ++k)
+        LANE(b->after, k, lane) = LANE(b->tried, k, lane) = LANE(b->tried_error, k, lane) = 0.0;
     b->lane[lane].since = run->t;
     if (b->either)
         SET(b->m.over, lane, 0);

@@ -86,6 +86,48 @@ static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
     return found;
 }
 
+/*
+ * The time from the end of a lane's step to the next sign change of a switching function that approaches
+ * zero there, or HUGE_VAL: where a cubic through its last four values is zero, if within AHEAD steps.
+ * Only the lengths of steps follow from it.
+ */
+static double MODEL(until_switch)(const MODEL(batch) *b, int lane)
+{
+    enum { LAST = STAGES < 2 ? STAGES + 2 : 4 };
+    const MODEL(block) *m = &b->m;
+    double first = AHEAD;
+    for (long k = 0; k < m->branches; ++k) {
+        const double end = LANE(b->end_side, k, lane);
+        const double stage = LANE(m->side, (STAGES - 1) * m->branches + k, lane);
+        double ahead = (1.0 - stage_at[STAGES - 1]) * (end / (stage - end)); /* by the last two values */
+        if (k == b->lane[lane].which || !(ahead > 0.0 && ahead < first))
+            continue;
+        double at[LAST], value[LAST];
+        for (long j = 0; j < LAST; ++j) {
+            const long i = STAGES + 2 - LAST + j; /* 0: begin; up to STAGES: stages; then the end */
+            at[j] = i == 0 ? 0.0 : i <= STAGES ? stage_at[i - 1] : 1.0;
+            value[j] = i == 0 ? LANE(b->side, k, lane)
+                : i <= STAGES ? LANE(m->side, (i - 1) * m->branches + k, lane)
+                              : end;
+        }
+        for (long order = 1; order < LAST; ++order) /* divided differences */
+            for (long j = 0; j < LAST - order; ++j)
+                value[j] = (value[j + 1] - value[j]) / (at[j + order] - at[j]);
+        for (int again = 0; again < 4 && ahead > 0.0 && ahead < first; ++again) { /* Newton's method */
+            double there = value[0], slope = 0.0;
+            for (long j = 1; j < LAST; ++j) {
+                const double step = 1.0 + ahead - at[j];
+                slope = there + step * slope;
+                there = value[j] + step * there;
+            }
+            ahead -= there / slope;
+        }
+        if (ahead > 0.0 && ahead < first)
+            first = ahead;
+    }
+    return first < AHEAD ? first * b->lane[lane].length : HUGE_VAL;
+}
+
 #if defined(BENDS)
 /*
  * The fraction of a step to try next when its error is too large; the error suggests `part`.

@@ -8,6 +8,7 @@ typedef struct {
     real h, behind, slope;
     mask busy, sampling, steps, known; /* lanes with a step; for a sample; another; with a prediction */
     mask planned;                      /* steps whose length their errors decide */
+    mask turned;                       /* whose known rates are those before a switch */
     mask loose;                        /* where Newton's method may stop short of round-off */
     mask resumed;                      /* whose step begins at the last sample */
     mask found, good;                  /* lanes whose step has rates; and lies in the domain */
@@ -32,7 +33,10 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
         SET(t.resumed, lane, l->phase == RESUME);
         SET(t.planned, lane, l->phase == STEP && b->fixed == 0.0);
         SET(b->m.sketch, lane, IN(t.planned, lane) && !l->settled);
-        SET(t.known, lane, l->known > 0.0);
+        const int turned = l->phase == STEP && l->behind && l->turned >= 0;
+        const int known = l->known > 0.0 && !(turned && l->length > LIKE_BEFORE * l->known);
+        SET(t.known, lane, known);
+        SET(t.turned, lane, known && turned);
         SET(t.loose, lane, b->fixed == 0.0 && !b->tape && !l->to_round_off); /* a tape has exact roots */
         l->solves += !IN(t.sampling, lane);
         LANE(&t.h, 0, lane) = l->length;
@@ -56,7 +60,7 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
     const mask over = m->over;
     if (any(t->resumed))
         MODEL(begin_at_samples)(b, t->resumed);
-    MODEL(predict)(b, t->behind, t->slope, t->known);
+    MODEL(predict)(b, t->behind, t->slope, t->known, t->turned);
     t->found = MODEL(solve)(m, t->h, t->busy);
     t->good = t->found & MODEL(accepted)(m);
     MODEL(reach_of)(m, t->h, stage_weight, m->reached);
@@ -153,9 +157,8 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
         l->behind = 0;
         if (l->phase == STEP && b->fixed == 0.0) {
             const double error = LANE(&worst, 0, lane);
-            const int over = IN(b->m.over, lane) != 0;
-            const double grown = PART_OF(over) * pow(error, over ? OVER_KINKS : -0.5 / STAGES);
-            l->longer = error > 0.0 ? grown : error == 0.0 ? 8.0 : 0.25;
+            l->longer = MODEL(growth)(l, error, IN(b->m.over, lane) != 0);
+            l->latest = error;
             if (!(error <= 1.0)) {
                 double part = fmax(0.1, l->refused > 1 ? fmin(l->longer, 0.5) : l->longer);
 #if defined(PATHS) /* most of the error may come from it */

@@ -67,10 +67,30 @@ static void MODEL(refuse_fixed)(MODEL(batch) *b, int lane)
         MODEL(refuse)(b, lane, 0.5 * l->whole);
 }
 
+/*
+ * How much longer the next step may be, by the error of this one, which is small for a power of the length
+ * that is known; and by that of another, for errors that earlier steps left in stiff states depend on
+ * no length.
+ */
+static double MODEL(growth)(const MODEL(lane) *l, double error, int over)
+{
+    if (!(error > 0.0))
+        return error == 0.0 ? 8.0 : 0.25;
+    const double usual = PART_OF(over) * pow(error, over ? OVER_KINKS : -0.5 / STAGES);
+    const double change = l->length / l->compared;
+    if (over || !(error < SMALL && l->error > 0.0 && change > LONGER))
+        return usual;
+    const double power = fmax(log(error / l->error) / log(change), LEAST_POWER);
+    return fmax(usual, fmin(PART_OF(over) * pow(error / SMALL, -1.0 / power), MOST_LONGER));
+}
+
 /* Accept a step; samples within it come first.  Returns whether to book it now. */
 static int MODEL(accept)(MODEL(batch) *b, int lane)
 {
-    b->lane[lane].step = b->lane[lane].length;
+    MODEL(lane) *l = b->lane + lane;
+    l->step = l->length;
+    if (b->fixed == 0.0 && !IN(b->m.over, lane))
+        l->ahead = MODEL(until_switch)(b, lane);
     return MODEL(all_sampled)(b, lane);
 }
 
@@ -122,22 +142,31 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
         l->halved = l->h < b->fixed ? l->halved : 0;
         l->h = fmin(b->fixed, 2.0 * l->h);
     } else {
-        if (l->fresh) /* the length its error allows after a switch, the shortest of recent ones */
-            l->after_switch = fmin(l->whole * fmin(l->longer, most),
-                                   l->after_switch > 0.0 ? 1.5 * l->after_switch : HUGE_VAL);
-        l->fresh = l->which >= 0;
-        if (l->which >= 0)
-            l->h = fmin(l->whole * fmin(l->longer, 2.0),
-                        l->after_switch > 0.0 ? l->after_switch : 0.3 * l->whole);
-        else if (!last) {
+        if (l->turned >= 0 && !l->aimed) { /* the length its error allows after a switch, the shortest of recent ones */
+            double *const after = &LANE(b->after, l->turned, lane);
+            *after = fmin(l->whole * fmin(l->longer, most), *after > 0.0 ? 1.5 * *after : HUGE_VAL);
+            LANE(b->tried, l->turned, lane) = l->whole;
+            LANE(b->tried_error, l->turned, lane) = l->latest;
+        }
+        l->compared = l->which < 0 ? l->step : LANE(b->tried, l->which, lane);
+        l->error = l->which < 0 ? l->latest : LANE(b->tried_error, l->which, lane);
+        l->turned = l->which;
+        if (l->which >= 0) {
+            const double after = LANE(b->after, l->which, lane);
+            l->h = after > 0.0 ? after : fmin(l->longer, 0.3) * l->whole;
+        } else if (!last) {
             l->h = fmin(l->step * fmin(l->longer, most), SUDDEN * l->steady);
             l->steady = l->step * l->longer;
         }
+        l->aimed = OVER_SWITCH * l->ahead < l->h;
+        if (l->aimed)
+            l->h = OVER_SWITCH * l->ahead;
+        l->ahead = HUGE_VAL;
     }
     l->behind = 1;
     l->settled = 0;
     if (l->which >= 0)
-        l->known = 0.0, l->steady = HUGE_VAL;
+        l->steady = HUGE_VAL;
     MODEL(sample_here)(b, lane);
     if (l->t >= b->stop)
         MODEL(end_run)(b, lane, 0);

@@ -55,16 +55,20 @@ typedef struct {
     const MODEL(segment) *segment;
     double t, h;
     double length, whole, step, part; /* of this step; before cuts; accepted; the part to cut at */
-    double known, longer, after_switch;
+    double known, longer;
     double kept;   /* time of the last sample, or -HUGE_VAL */
     int written;   /* whether the current sample is written, though its step is repeated */
     double steady; /* the length that the error of the step before allows */
-    int phase, behind, predicted, fresh, last, cuts, refused, halved;
+    double latest;          /* the error of this step */
+    double compared, error; /* of another, the last or the last one after the same switch; 0: none */
+    double ahead;  /* time from the end of the step to the next switch, or HUGE_VAL */
+    int phase, behind, predicted, last, cuts, refused, halved;
+    int aimed;   /* whether the step is to end just behind a switch */
     int stuck;   /* whether steps go over kinks because they could not end at them */
     int crawled; /* steps in a row that are hardly longer than round-off of the time */
     int to_round_off; /* how many more steps are solved to round-off: see residual.c */
     int settled; /* whether no switch was located after all: the step is solved to full accuracy */
-    long which; /* the switch at the end of the step; -1 if none */
+    long which, turned; /* the switch at the end of the step, and at its beginning; -1 if none */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
     long solves, comparisons;     /* steps solved since then; how often modes were compared */
 } MODEL(lane);
@@ -88,6 +92,8 @@ typedef struct {
     double stop, tolerance, first, longest, fixed;
     double beyond; /* part of a step that may lie beyond the switch at its end, where no stage lies */
     real *rate, *side, *sums, *lost, *known;       /* at the beginning of a step; of the step before */
+    /* branches: the length for a step after each switch, or 0; what the last had, and its error */
+    real *after, *tried, *tried_error;
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
@@ -116,8 +122,21 @@ enum { TRIED = 32, AGAIN = 12 };
 #define PART_OF(over) ((over) ? 0.9 : 0.82)
 /* An error may be small by chance: a step is at most this much longer than the last one allowed. */
 #define SUDDEN 1.5
+/*
+ * Below an error of SMALL, one step that was longer than another by LONGER tells the power of the length
+ * that errors are proportional to, if it is above LEAST_POWER; the next is at most MOST_LONGER times longer.
+ */
+#define SMALL 0.1
+#define LONGER 1.05
+#define LEAST_POWER 3.0
+#define MOST_LONGER 3.0
+/* Rates before a switch predict those after it, in a step at most this much longer than theirs. */
+#define LIKE_BEFORE 2.0
 /* A refused step is repeated up to where a path functional begins to yield, if before this part. */
 #define YIELDS 0.999
+/* How far behind a step a switch is looked for, in its lengths; and how far a step goes over it. */
+enum { AHEAD = 3 };
+#define OVER_SWITCH 1.1
 /* A switch within this fraction of a step from its end, or its beginning, counts as there. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
@@ -294,13 +313,20 @@ static void MODEL(rates_at)(const MODEL(block) *m, const real *rates, real at, r
 }
 
 /* The predictor of Newton's method: the known step's polynomial, or the rates at the beginning. */
-static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known)
+static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known, mask turned)
 {
     const MODEL(block) *m = &b->m;
+    real *const jump = b->some_rate;
+    memset(jump, 0, (size_t)m->n * sizeof(real));
+    if (any(turned)) {
+        MODEL(rates_at)(m, b->known, behind, jump);
+        for (long k = 0; k < m->n; ++k)
+            jump[k] = chosen(turned, b->rate[k] - jump[k], zero);
+    }
     for (long i = 0; i < STAGES; ++i) {
         real *const rates = m->rates + i * m->n;
         MODEL(rates_at)(m, b->known, behind + slope * stage_at[i], rates);
         for (long k = 0; k < m->n; ++k) /* zero for a fixed step, which may be much longer than the fastest time constant */
-            rates[k] = chosen(known, rates[k], b->fixed > 0.0 ? zero : b->rate[k]);
+            rates[k] = chosen(known, rates[k] + jump[k], b->fixed > 0.0 ? zero : b->rate[k]);
     }
 }

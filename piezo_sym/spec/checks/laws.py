@@ -73,11 +73,15 @@ def _unknown_reference(
         name = given if free else next(other for other in others if other not in spec.elements)
         body = f'{name} = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c_0)" }}'
         remedy = f"add one to [elements]: {body}"
+        new = [f"{word} = {entry}" for word, entry in WARM.items() if word not in spec.parameters]
+        remedy += f"; and to [parameters]: {' and '.join(new)}" * bool(new)
         remedy += "" if free else f", and name {quote(name)} here instead of {quote(given)}"
         return SpecError(what, where, "a body for the heat", remedy)
     return SpecError(what, where)
 
 
+#: The parameters of a body's usual law.
+WARM = {"T_0": '{ value = 300, unit = "K" }', "c_0": '{ value = 100, unit = "J/K" }'}
 #: Names for time, which enters through inputs only.
 TIME = ("t", "time")
 

@@ -70,18 +70,18 @@ def _remedy(condition: Condition, spec: Tables) -> str:
     """Return what to do about a condition that the values given do not satisfy."""
     words = names(condition.tree)
     value = next((f"initial.{word}" for word in words if word in spec.initial), "a value")
-    more = without_default(spec, words)
-    return f"change {value} or the domain{_law(condition, spec)}" + f"; {more}" * bool(more)
-
-
-def _law(condition: Condition, spec: Tables) -> str:
-    """Return the field for a whole law, if a store's size depends on its own state."""
+    advice, more = f"change {value} or the domain", without_default(spec, words)
     name = condition.where.removeprefix("elements.")
-    if name in spec.elements and spec.elements[name].row.form.role[:1] == ("store",):
-        (size, law, _), element = spec.elements[name].row.form.one_of, spec.elements[name]
-        if state_symbol(element, name) in names(condition.tree):
-            return f"; a law of the {law.replace('_', ' ')} itself is given as {law}, not as {size}"
-    return ""
+    element = spec.elements.get(name)
+    if element and element.row.form.role[:1] == ("store",):
+        size, law, _ = element.row.form.one_of
+        if state_symbol(element, name) in words:  # perhaps the whole law
+            advice += (
+                f"; a law of the {law.replace('_', ' ')} itself is given as {law}, not as {size}"
+            )
+        elif getattr(element, size) is not None and {*words} <= {*names(element.law(size))}:
+            advice = f"check its sign: {size} has to be above 0"
+    return advice + f"; {more}" * bool(more)
 
 
 def _start_conditions(spec: Tables) -> Iterator[Condition]:
