@@ -72,3 +72,19 @@ def test_a_parameter_that_is_zero_is_divided_by_only_where_that_is_chosen(law, z
     assert np.isfinite(elements).all()
     changed = module.Parameters(b=np.full(z.shape, 0.0))  # one value per run
     assert np.array_equal(module.rhs(x, u, changed), rates)
+
+
+@pytest.mark.parametrize(
+    "law",
+    ["F_0*q/(b - r) if b > r else F_0*q/r", "F_0*q/r*(1/(b/r - 1) if b > r else 1)"],
+)
+def test_a_difference_of_positive_parameters_may_be_zero(law):
+    text = SPEC.replace('["r > 0"', '["b > 0", "r > 0"')
+    text = text.replace("[domain]", 'b = {{ value = 0.5, unit = "m" }}\n[domain]')
+    module = module_of(parse(text.format(law=law)))
+    p, x, u = module.Parameters(), np.array([0.1, -0.3]), np.zeros(0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rates, jacobian = module.rhs(x, u, p), module.jacobian(x, u, p)
+    assert np.allclose(rates, [1.2, 0.1], rtol=1e-14)
+    assert np.allclose(jacobian, [[0, -4], [1, 0]], rtol=1e-14)

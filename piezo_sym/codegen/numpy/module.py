@@ -144,7 +144,7 @@ class _Printer:
         rows = function.rows if function else ()
         listed = {name for row in rows for part in row.listed for name in names(part)}
         dimensions = f"{self.x}.ndim" if "x" in arguments else "1"
-        floats = divisors(roots, quantities, self.parameters) - self.positive - listed
+        floats = divisors(roots, quantities, self.parameters, self.positive) - listed
         lines += self._unpacking(used, dimensions, listed, floats)
         note = ""
         for quantity in quantities:
