@@ -123,7 +123,9 @@ def _conditions(
         way = next((way for way in ways if _satisfied(way, points)), ways[0])
         warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
         text = condition_text(sided(way))
-        found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
+        if warm and len(text) > MOST_TEXT:  # the law, which may divide where `way` multiplies
+            way, text = claim, warm[0]
+        found.setdefault(way, text)
     return found
 
 

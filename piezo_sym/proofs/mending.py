@@ -14,7 +14,7 @@ from functools import cache, reduce
 from itertools import combinations
 
 from piezo_sym.errors import STICKING
-from piezo_sym.expressions.calculus import add, mul, neg
+from piezo_sym.expressions.calculus import add, mul
 from piezo_sym.expressions.exact_eval import all_hold
 from piezo_sym.expressions.tidying import tidied
 from piezo_sym.expressions.tree import ONE, ZERO, Add, Call, Cmp, Expr, Neg, Num, Sym, names
@@ -80,7 +80,10 @@ def mending_conditions(
         asked = replace(obligation, questions=questions, sign=about, rests_on=())
         return not within(conditions)(Neg(ONE)) and proved(asked)  # -1 > 0 only in no domain
 
+    points = spec_points(iphs)
     factor = _of_factor(sign.law, sign.letter, shown)
+    if factor and not {*names(factor)} <= frozenset[str]().union(*points):
+        factor = None  # the rate that drives a slip has no name in [domain]
     if factor and (said := turning([factor], iphs)):
         return said
     ways = _ways(factor, sign, given, within)
@@ -90,7 +93,7 @@ def mending_conditions(
         conditions = rest if rest and mended(rest) else conditions
     if not conditions:
         return ""
-    broken = [c for c in conditions for p in spec_points(iphs) if all_hold((c,), p) is False]
+    broken = [c for c in conditions for p in points if all_hold((c,), p) is False]
     return in_words([condition_text(sided(c)) for c in conditions], broken, iphs)
 
 
@@ -133,8 +136,8 @@ def _of_terms(sign: SignOf, fixed: Collection[str], within: Within) -> tuple[Cmp
     everywhere = within(())
     claims = (without_factors(Cmp(">=", c, ZERO), everywhere) for c in found)
     conditions = dict.fromkeys(shortened(claim, everywhere) for claim in claims)
-    if any(Cmp(">=", tidied(neg(c.left)), ZERO) in conditions for c in conditions):
-        return ()  # a parameter that has to be zero
+    if any(tidied(add(a.left, b.left)) == ZERO for a, b in combinations(conditions, 2)):
+        return ()  # what has to be zero, as a + d in (a + d)*abs(v)
     return _joined(c for c in conditions if names(c))
 
 
