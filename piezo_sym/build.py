@@ -9,13 +9,13 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, final
 
 from piezo_sym.errors import DriftError, ProofError, UsageError, quote
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
-from piezo_sym.module_cache import keep_files, keep_template, kept_files, own_sources
+from piezo_sym.module_cache import MODULE, PROVED, SHAPE, keep, kept
 from piezo_sym.report import Report, Verdict, proofs_json, report_of, smt2
 from piezo_sym.spec.source import shipped
 from piezo_sym.spec.values import Template, shape_hash
@@ -72,10 +72,11 @@ def report_and_files(model: Model) -> tuple[Report, Mapping[str, str]]:
     What is proved is kept: the very same model is not proved again. Where the time was too short to
     print the module, there are only the files of verdicts.
     """
-    if (files := kept_files(model.key)) and PROOFS.format(model.name) in files:
+    files: Mapping[str, str] | None = kept(model.key, PROVED)
+    if files and PROOFS.format(model.name) in files:
         return report_of(files[PROOFS.format(model.name)]), files
     report, template = report_and_texts(model)
-    return report, keep(model, report, template)
+    return report, keep_proved(model, report, template)
 
 
 def report_and_texts(
@@ -98,13 +99,18 @@ def report_and_texts(
     return report, template and replace(template, verdict=verdict_line(report))
 
 
-def keep(model: Model, report: Report, template: Template | None) -> dict[str, str]:
-    """Return the text of each generated file of a model; they are kept if it is proved."""
+def keep_proved(model: Model, report: Report, template: Template | None) -> dict[str, str]:
+    """Return the text of each generated file of a model; they are kept if it is proved.
+
+    Where a row was late, its module is kept until more is known of it, but not what is said of it.
+    """
     files = files_of(model, report, template)
-    if template and report.proved and report.sources == own_sources():
-        keep_template(shape_hash(model.flatten().model_dump()), template)
+    if template and report.proved:
+        data = model.flatten().model_dump()
+        keep(shape_hash(data), SHAPE, asdict(template), report.sources)
+        keep(model.sha256, MODULE, template.filled(data), report.sources)
         if report.decided:
-            keep_files(model.key, files)
+            keep(model.key, PROVED, files, report.sources)
     return files
 
 

@@ -114,6 +114,17 @@ def temporary_folder() -> Path:
     return Path(folder)
 
 
+def user_cache(name: str) -> Path:
+    """Return a folder of the user's cache; a temporary one for a user without a home."""
+    import platformdirs
+
+    with suppress(RuntimeError):
+        folder = Path(platformdirs.user_cache_dir("piezo_sym"))
+        if folder.is_absolute():
+            return folder / name
+    return temporary_folder() / name
+
+
 def zarr_library(where: str) -> Any:
     """Return zarr; raise `UsageError` if it is not installed."""
     try:

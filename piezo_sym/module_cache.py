@@ -1,93 +1,65 @@
-"""The user's cache: generated modules, templates, and all files of proved specs; and a loader.
+"""The user's cache: a record of each thing that is kept; and a loader of generated modules.
 
-Input: the hash of a spec or of its shape, and a module's name.  Output: a loaded module, a
-`Template`, or texts.  What was made by other sources of the package, or proved with other
+Input: a hash of a spec, of its shape or of what it says, and what was made of it.  Output: the very
+same, or a loaded module.  What was made by other sources of the package, or proved with other
 libraries, is not found.
 """
 
+import ast
 import hashlib
 import importlib.util
 import json
 import sys
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from piezo_sym.errors import FileError
-from piezo_sym.files import path_text, read_text, temporary_folder, write_text, write_together
-from piezo_sym.spec.values import Template
-from piezo_sym.version import sources_hash
+from piezo_sym.files import (
+    path_text,
+    read_bytes,
+    read_text,
+    temporary_folder,
+    user_cache,
+    write_text,
+    write_together,
+)
+from piezo_sym.version import own_sources, unchanged
 
-#: Endings of folders of modules that are not proved, of templates, and of files of what is proved.
-UNPROVED_FOLDER, SHAPE_FOLDER, PROVED_FOLDER = "-unproved", "-shape", "-proved"
+#: Endings of folders of records: the texts of modules, and of those that are not proved; templates;
+#: all files of what is proved; specs that were loaded.
+MODULE, UNPROVED_MODULE, SHAPE, PROVED, LOADED = "", "-unproved", "-shape", "-proved", "-loaded"
 RECORD = "record.json"  # of plain data, after its digest
 
 
-def cached_module(name: str, sha256: str, kind: str = "") -> ModuleType | None:
-    """Return a module from the cache; None if it is missing or cannot be loaded."""
-    path = _path(name, sha256, kind)
-    with suppress(FileError):
-        return None if read_text(path) is None else load_module(path)
-    return None
-
-
-def cache_module(name: str, sha256: str, texts: Mapping[str, str], kind: str = "") -> ModuleType:
-    """Write a module's texts to the cache, and return the module."""
-    folder = _path(name, sha256, kind).parent
-    try:
-        return write_module(folder, name, texts)
-    except FileError:  # the cache is read-only
-        return write_module(temporary_folder() / folder.name, name, texts)
-
-
-def write_module(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleType:
-    """Write a module's texts to a folder, and return the module."""
-    write_together({folder / f"{name}{ending}": text.encode() for ending, text in texts.items()})
-    return load_module(folder / f"{name}.py")
-
-
-def kept_template(shape: str) -> Template | None:
-    """Return the proved texts of a spec's shape, if they are in the cache."""
-    found = _record(_folder(shape, SHAPE_FOLDER))
-    return None if found is None else Template(**found)
-
-
-def keep_template(shape: str, template: Template) -> None:
-    """Write the proved texts of a spec's shape to the cache, if possible."""
-    _write_record(_folder(shape, SHAPE_FOLDER), asdict(template))
-
-
-def kept_files(key: str) -> Mapping[str, str] | None:
-    """Return the texts of all files generated from a proved model, None if they are not cached.
-
-    `key` is that of the model: see `Model.key`.
-    """
-    found: Mapping[str, str] | None = _record(_folder(key, PROVED_FOLDER))
-    return found
-
-
-def keep_files(key: str, files: Mapping[str, str]) -> None:
-    """Write the texts of all files generated from a proved model to the cache, if possible."""
-    _write_record(_folder(key, PROVED_FOLDER), dict(files))
-
-
-def _record(folder: Path) -> Any:
-    """Return the plain data of a folder; None if it is missing, or not what was written there."""
+def kept(key: str, kind: str) -> Any:
+    """Return the plain data kept under a key; None if it is missing, or not what was kept."""
+    folder = _folder(key, kind)
     with suppress(FileError):
         digest, _, text = (read_text(folder / RECORD) or "").partition("\n")
         return json.loads(text) if digest == _digest(folder, text) else None
     return None
 
 
-def _write_record(folder: Path, content: Any) -> None:
-    """Write plain data into a folder, after its digest, if possible."""
-    text = json.dumps(content)
+def keep(key: str, kind: str, content: Any, sources: str) -> bool:
+    """Keep plain data under a key, if possible, and return whether it is kept.
+
+    Only what the sources made that this process has imported, by their hash.
+    """
+    if not sources or sources != own_sources() or not unchanged():
+        return False
+    folder, text = _folder(key, kind), json.dumps(content)
     with suppress(FileError):
         write_text(folder / RECORD, f"{_digest(folder, text)}\n{text}")
+        return True
+    return False
+
+
+def _folder(key: str, kind: str) -> Path:
+    return user_cache("modules") / f"{key}-{own_sources()}{kind}"
 
 
 def _digest(folder: Path, text: str) -> str:
@@ -95,21 +67,30 @@ def _digest(folder: Path, text: str) -> str:
     return hashlib.sha256(f"{folder.name}\n{text}".encode()).hexdigest()
 
 
-def _path(name: str, sha256: str, kind: str = "") -> Path:
-    return _folder(sha256, kind) / f"{name}.py"
+def cached_module(name: str, sha256: str, kind: str = MODULE) -> ModuleType | None:
+    """Return a module from the cache, None if it is not there; its record mends its files."""
+    if (texts := kept(sha256, kind)) is None:
+        return None
+    folder = _folder(sha256, kind)
+    try:
+        return write_module(folder, name, texts)
+    except FileError:  # the cache is read-only
+        return write_module(temporary_folder() / folder.name, name, texts)
 
 
-def _folder(sha256: str, kind: str) -> Path:
-    import platformdirs
+def cache_module(
+    name: str, sha256: str, texts: Mapping[str, str], sources: str, kind: str = MODULE
+) -> ModuleType:
+    """Return the module of some texts, which are kept if possible; `sources` as in `keep`."""
+    found = cached_module(name, sha256, kind) if keep(sha256, kind, texts, sources) else None
+    return found or write_module(temporary_folder() / f"{sha256}{kind}", name, texts)
 
-    folder = Path(platformdirs.user_cache_dir("piezo_sym")) / "modules"
-    return folder / f"{sha256}-{own_sources()}{kind}"
 
-
-@cache
-def own_sources() -> str:
-    """Return the hash of the sources of this package as they were when it was first asked for."""
-    return sources_hash()
+def write_module(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleType:
+    """Write a module's texts to a folder where they are not there, and return the module."""
+    contents = {folder / f"{name}{ending}": text.encode() for ending, text in texts.items()}
+    write_together({path: data for path, data in contents.items() if read_bytes(path) != data})
+    return load_module(folder / f"{name}.py")
 
 
 def load_module(path: Path) -> ModuleType:
@@ -119,7 +100,6 @@ def load_module(path: Path) -> ModuleType:
 
 @lru_cache(maxsize=64)
 def _loaded(path: Path, text: str | None) -> ModuleType:
-    del text  # a key of the cache alone
     name = f"piezo_sym_generated_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
@@ -134,6 +114,8 @@ def _loaded(path: Path, text: str | None) -> ModuleType:
         raise FileError("cannot be loaded", path_text(path), remedy=remedy) from error
     finally:
         sys.dont_write_bytecode = before
+    if module.__doc__ is None:  # with -OO; it says what is proved
+        module.__doc__ = ast.get_docstring(ast.parse(text or ""), clean=False)
     if not hasattr(module, "SPEC_SHA256"):
         raise FileError("is no generated module", path_text(path), remedy="move it elsewhere")
     return module

@@ -8,9 +8,11 @@ Input: a shipped name, a path, or a `Model`.  Output: its generated module, load
 from __future__ import annotations
 
 import filecmp
+import hashlib
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, suppress
+from functools import lru_cache
 from pathlib import Path
 from threading import Thread
 from types import ModuleType
@@ -21,23 +23,25 @@ import numpy as np
 from piezo_sym.errors import ProofError, UsageError, quote
 from piezo_sym.files import path_text, temporary_folder
 from piezo_sym.module_cache import (
-    UNPROVED_FOLDER,
+    LOADED,
+    SHAPE,
+    UNPROVED_MODULE,
     cache_module,
     cached_module,
-    kept_template,
+    keep,
+    kept,
     load_module,
     write_module,
 )
 from piezo_sym.run.module import UNPROVED, held, verdict_of
-from piezo_sym.spec.names import MAX_NAME
-from piezo_sym.spec.source import data, find, read, shipped
-from piezo_sym.spec.values import shape_hash
+from piezo_sym.spec.source import MODELS, data, find, read, shipped
+from piezo_sym.spec.values import Template, shape_hash, without_values
 from piezo_sym.spec.write import spec_hash
-from piezo_sym.version import PACKAGE
+from piezo_sym.version import PACKAGE, own_sources
 
 if TYPE_CHECKING:
+    from piezo_sym.report import Report
     from piezo_sym.spec.model import Model
-    from piezo_sym.spec.values import Template
 
 GENERATED = Path("generated")  # of the working folder
 
@@ -58,19 +62,11 @@ def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType
     spec : the name of a shipped spec, the path of a spec file, or a `Model`.
     stages : per step of the run that follows; steps are compiled while the module is proved.
     """
-    name, sha256, content = _identity(spec)
-    module = _available(name, sha256)
-    if module is None and isinstance(content, dict):
-        module = _refilled(name, sha256, content)
-    if module is None:
-        from piezo_sym.verification.process import started
-
-        started()
-        from piezo_sym.spec.load import load
-        from piezo_sym.spec.model import Model
-
-        model = content if isinstance(content, Model) else load(spec)  # type: ignore[arg-type]
-        module = _available(model.name, model.sha256) or _derived(model, stages)
+    if isinstance(spec, str | Path):
+        file = find(spec)
+        module = _of_file(file, read(file), stages)
+    else:
+        module = _of_model(spec, stages)
     verdict = verdict_of(module)
     if verdict.startswith(UNPROVED):
         text = f"model '{module.NAME}' is {verdict}: its runs may break a law of thermodynamics"
@@ -85,29 +81,70 @@ def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType
     return module
 
 
-def _identity(spec: str | Path | Model) -> tuple[str, str, Model | dict[str, Any] | None]:
-    """Return the name and the hash of a spec, and a model or plain data of a spec's shape.
+def _of_file(path: Path, text: str, stages: int | None) -> ModuleType:
+    """Return the module of a spec file; the spec's types are loaded only in doubt."""
+    content = data(text)
+    if module := _known(path, content):
+        return module
+    from piezo_sym.verification.process import started
 
-    The spec's types are loaded only in doubt.
+    started()
+    from piezo_sym.spec.load import of_file
+
+    model = of_file(path, text)
+    module = _of_model(model, stages)
+    if not model.components and not model.banks:
+        _remember(content)
+    return module
+
+
+def _of_model(model: Model, stages: int | None) -> ModuleType:
+    from piezo_sym.spec.model import Model  # whoever has one has loaded its type
+
+    if not isinstance(model, Model):
+        expected = "the name of a shipped spec, the path of a spec file, or a Model"
+        raise UsageError(f"{quote(model)} is no model", "model", expected)
+    if found := _available(model.name, model.sha256):
+        if 0.0 in model.flatten().initial.values():  # the hash leaves out what is 0
+            _check_derivation(model)
+        return found
+    return _derived(model, stages)
+
+
+@lru_cache(maxsize=64)
+def _check_derivation(model: Model) -> None:
+    """Refuse values that contradict each other where others do not, as starts of joined stores."""
+    from piezo_sym.derivation import derive
+
+    derive(model)
+
+
+def _known(path: Path, content: dict[str, Any]) -> ModuleType | None:
+    """Return the module of a spec, if loading would not refuse what it says: see `_remember`."""
+    tables = all(isinstance(table, dict) for table in content.values())
+    if (tables and path.parent == MODELS) or _was_loaded(content):  # tests load those that it has
+        name = str(content.get("model", {}).get("name"))
+        if module := _available(name, spec_hash(content)):
+            return module
+    return _refilled(content) if _was_loaded(without_values(content)) else None
+
+
+def _remember(content: dict[str, Any]) -> None:
+    """Remember that a spec was loaded, whose data has this very text, and one but for its values.
+
+    A hash is not enough: it leaves out entries without effect, such as `count = 0`, that loading
+    may refuse.
     """
-    if not isinstance(spec, str | Path):
-        from piezo_sym.spec.model import Model  # whoever has one has loaded its type
+    for one in (content, without_values(content)):
+        keep(_text_hash(one), LOADED, True, own_sources())
 
-        if not isinstance(spec, Model):
-            expected = "the name of a shipped spec, the path of a spec file, or a Model"
-            raise UsageError(f"{quote(spec)} is no model", "model", expected)
-        return spec.name, spec.sha256, spec
-    content = data(read(find(spec)))
-    if {"components", "banks"} & content.keys():  # as they are written out
-        from piezo_sym.spec.load import load
 
-        return _identity(load(spec))
-    header = content.get("model")
-    name = header.get("name") if isinstance(header, dict) else None
-    known = isinstance(name, str) and name.isidentifier() and len(name) <= MAX_NAME
-    if not known or not all(isinstance(table, dict) for table in content.values()):
-        return "", "", None
-    return str(name), spec_hash(content), content
+def _was_loaded(content: dict[str, Any]) -> bool:
+    return kept(_text_hash(content), LOADED) is True
+
+
+def _text_hash(content: dict[str, Any]) -> str:
+    return hashlib.sha256(repr(content).encode()).hexdigest()
 
 
 def _command(spec: str | Path | Model) -> str:
@@ -133,28 +170,35 @@ def _available(name: str, sha256: str) -> ModuleType | None:
 
     One that is not proved only if the working folder has the same.
     """
-    if not name:
-        return None
     if found := _packaged(name, sha256) or cached_module(name, sha256):
         return found
-    found = cached_module(name, sha256, UNPROVED_FOLDER) if (GENERATED / name).is_dir() else None
+    found = cached_module(name, sha256, UNPROVED_MODULE) if (GENERATED / name).is_dir() else None
     return found if found and _matches_folder(found) else None
 
 
-def _refilled(name: str, sha256: str, data: Mapping[str, Any]) -> ModuleType | None:
-    """Return the module of a spec that differs by values from a known one; None if it is not so.
+def _kept_template(shape: str) -> Template | None:
+    """Return the proved texts of a spec's shape, if they are in the cache."""
+    found = kept(shape, SHAPE)
+    return None if found is None else Template(**found)
+
+
+def _refilled(content: dict[str, Any]) -> ModuleType | None:
+    """Return the module of a spec that differs by values from a loaded one; None if it is not so.
 
     What else loading would say of the values, the module's conditions say: in doubt, None.
     """
-    found = kept_template(shape_hash(data))
+    found, name = _kept_template(shape_hash(content)), content["model"]["name"]
     if found is None or not found.quick:
         return None
     try:
-        texts = found.filled(data)
+        texts = found.filled(content)
     except OverflowError:
         return None
-    trial = write_module(temporary_folder() / sha256, name, texts)
-    return cache_module(name, sha256, texts) if _starts_inside(trial) else None
+    sha256 = spec_hash(content)
+    if not _starts_inside(write_module(temporary_folder() / sha256, name, texts)):
+        return None
+    _remember(content)
+    return cache_module(name, sha256, texts, own_sources())
 
 
 def _starts_inside(module: Any) -> bool:
@@ -173,19 +217,17 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
     """Return the module of a model, generated into the user's cache, with its template."""
     data = model.flatten().model_dump()
     shape = shape_hash(data)
-    if found := kept_template(shape):
-        from piezo_sym.derivation import derive
+    if found := _kept_template(shape):
+        _check_derivation(model)
+        return cache_module(model.name, model.sha256, found.filled(data), own_sources())
 
-        derive(model)  # values may contradict each other where others do not
-        return cache_module(model.name, model.sha256, found.filled(data))
-
-    from piezo_sym.build import keep, report_and_texts
+    from piezo_sym.build import keep_proved, report_and_texts
 
     def meanwhile(template: Template) -> AbstractContextManager[None]:
         return _compiling_ahead(model.name, shape, template.filled(data), stages)
 
     report, found = report_and_texts(model, meanwhile)
-    if found and report.failures and (module := _unproved(model, found.filled(data))):
+    if found and report.failures and (module := _unproved(model, report, found.filled(data))):
         return module
     try:
         report.raise_if_not_proved()
@@ -194,8 +236,9 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
         error.remedy += f"; or `{command}` writes it all the same, for a run"
         raise
     assert found is not None  # a report that proves a module has its texts
-    keep(model, report, found)
-    return cache_module(model.name, model.sha256, found.filled(data))
+    keep_proved(model, report, found)
+    kept_module = cached_module(model.name, model.sha256)
+    return kept_module or write_module(temporary_folder() / shape, model.name, found.filled(data))
 
 
 @contextmanager
@@ -226,11 +269,11 @@ def _import_results() -> None:
         import xarray  # noqa: F401
 
 
-def _unproved(model: Model, texts: Mapping[str, str]) -> ModuleType | None:
+def _unproved(model: Model, report: Report, texts: Mapping[str, str]) -> ModuleType | None:
     """Return a module that is not proved, if the working folder has the same."""
     if not (GENERATED / model.name).is_dir():
         return None
-    module = cache_module(model.name, model.sha256, texts, UNPROVED_FOLDER)
+    module = cache_module(model.name, model.sha256, texts, report.sources, UNPROVED_MODULE)
     return module if _matches_folder(module) else None
 
 

@@ -92,13 +92,12 @@ class Worker:
     def _start(self) -> None:
         if self.process is None or self.process.poll() is not None:
             self.close()
-            path = os.pathsep.join(path or os.getcwd() for path in sys.path)
             self.process = subprocess.Popen(
                 (sys.executable, "-P", *self.arguments),  # no package of the working folder
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 start_new_session=self.group,
-                env={**os.environ, **KEEP_MEMORY, "PYTHONPATH": path},
+                env={**os.environ, **KEEP_MEMORY, "PYTHONPATH": search_path()},
             )
 
     def _exchange(self, request: bytes, is_last: Callable[[bytes], bool]) -> Iterator[bytes]:
@@ -130,6 +129,12 @@ class Worker:
 
 
 _workers: WeakSet[Worker] = WeakSet()
+
+
+def search_path() -> str:
+    """Return where this process looks for modules, for one that is started with ``-P``."""
+    known = (path for path in sys.path if isinstance(path, str))  # Python passes over others, too
+    return os.pathsep.join(path or os.getcwd() for path in known)
 
 
 @contextmanager

@@ -19,7 +19,7 @@
  */
 /*
  * One step of energy-preserving Gauss collocation. The row `program` of the proofs covers the
- * functions `integrands` and `stage`; the others and the tables serve Newton's method.
+ * functions `integrands` and `stage`, and `costates`; the others and the tables serve Newton's method.
  */
 #include "stack_maxwell.h"
 
@@ -154,6 +154,45 @@ static void stack_maxwell_stage(const real *restrict x,
     rows[6 + slips_count + slips_count] = F_damper*v_mass/T;
     rows[7 + slips_count + slips_count] = lam*(T_e/T - 1.0);
 }
+
+#if !defined(ALONE) /* the step alone solves its equations to round-off */
+#define COSTATES
+
+/* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
+static void stack_maxwell_costates(const real *restrict x,
+                                   const real *restrict g,
+                                   const stack_maxwell_reals *restrict p_,
+                                   real *restrict out)
+{
+    const long slips_count = p_->slips_count;
+    const real m = p_->m;
+    const real C = p_->C;
+    const real k = p_->k;
+    const real Q = x[0];
+    const real p = x[1];
+    const real q = x[2];
+    const real T = g[0];
+    const real *restrict F_slips = g + 1;
+    /* co-states dU/dx */
+    const real V_clamped = Q/C;
+    const real v_mass = p/m;
+    const real F_spring = k*q;
+    /* each lane of slips: result */
+#pragma omp simd
+    for (long j = 0; j < slips_count; ++j) {
+        out[3 + j] = F_slips[j];
+    }
+    /* result */
+    out[0] = V_clamped;
+    out[1] = v_mass;
+    out[2] = F_spring;
+    out[3 + slips_count] = T;
+}
+enum { stack_maxwell_bodies = 1 };
+static const int stack_maxwell_body[] = {
+    4,
+};
+#endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
 static void stack_maxwell_slopes(const real *restrict x,

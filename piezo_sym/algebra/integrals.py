@@ -20,6 +20,7 @@ from piezo_sym.errors import PiezoError
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Expr, names
+from piezo_sym.processes import search_path
 
 #: Seconds of processor time for SymPy, seconds by the clock for the process, bytes of its memory.
 SECONDS, WITH_START, MEMORY = 5, 60, 4 << 30
@@ -32,8 +33,8 @@ HYPERBOLIC = sp.sinh, sp.cosh, sp.tanh
 def integral(law: Expr, name: str, positive: frozenset[str]) -> Expr | None:
     """Return an integral of a smooth law for `positive` names > 0; None if none is found."""
     request = json.dumps([spell(law), name, sorted(positive)])
-    command = (sys.executable, "-m", "piezo_sym.algebra.integrals")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    command = (sys.executable, "-P", "-m", "piezo_sym.algebra.integrals")
+    environment = {**os.environ, "PYTHONPATH": search_path()}
     try:
         done = subprocess.run(
             command,

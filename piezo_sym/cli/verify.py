@@ -41,8 +41,8 @@ def verify(
         from piezo_sym.verification.recheck import check_installed
 
         check_installed()
-    reports, proofs, errors = _reports(specs)
-    second = {spec: _rechecked(spec, text) for spec, text in proofs.items() if recheck}
+    reports, proved, errors = _reports(specs)
+    second = _rechecked(proved) if recheck else {}
     if junit is not None:
         pairs = [(report, second.get(spec)) for spec, report in reports.items()]
         write_text(junit, junit_xml(pairs, errors))
@@ -70,38 +70,44 @@ def _show(reports: dict[str, Report], second: dict[str, Recheck], *, as_json: bo
         typer.echo(json.dumps(rows, indent=2))
 
 
-def _reports(specs: list[str]) -> tuple[dict[str, Report], dict[str, str], list[PiezoError]]:
-    """Return the verdicts on specs, the texts of their ``proofs.json``, and what is wrong."""
+def _reports(
+    specs: list[str],
+) -> tuple[dict[str, Report], dict[str, tuple[str, str]], list[PiezoError]]:
+    """Return the verdicts on specs, the texts of each and its ``proofs.json``, and what is wrong.
+
+    The text of a spec is the user's own, as far as a second program reads it.
+    """
     from piezo_sym.verification.process import started
 
     started()
     from piezo_sym.build import PROOFS, report_and_files
-    from piezo_sym.spec.load import load
+    from piezo_sym.spec.load import of_file
+    from piezo_sym.spec.source import find, read
 
     reports: dict[str, Report] = {}
-    proofs: dict[str, str] = {}
+    proved: dict[str, tuple[str, str]] = {}
     errors: list[PiezoError] = []
     for spec in specs:
         try:
             with about(spec):
-                model = load(spec)
+                path = find(spec)
+                text = read(path)
+                model = of_file(path, text)
                 reports[spec], files = report_and_files(model)
-                proofs[spec] = files[PROOFS.format(model.name)]
+                flat = model.flatten()
+                own = text if flat is model else flat.to_toml()
+                proved[spec] = own, files[PROOFS.format(model.name)]
         except ContradictionError:
             raise
         except PiezoError as error:
             errors.append(error)
-    return reports, proofs, errors
+    return reports, proved, errors
 
 
-def _rechecked(spec: str, proofs: str) -> Recheck:
-    from piezo_sym.spec.load import load
-    from piezo_sym.spec.source import find, read
+def _rechecked(proved: dict[str, tuple[str, str]]) -> dict[str, Recheck]:
     from piezo_sym.verification.recheck import recheck
 
-    model = load(spec)
-    text = model.flatten().to_toml() if model.flatten() is not model else read(find(spec))
-    return recheck(text, proofs)
+    return {spec: recheck(*texts) for spec, texts in proved.items()}
 
 
 def _rows(report: Report, second: Recheck | None) -> list[dict[str, object]]:

@@ -75,11 +75,8 @@ class Collocation:
 
     @property
     def takes_residuals(self) -> bool:
-        """Whether the body `heated` can take as heat what Newton's method leaves of the equations.
-
-        Path functionals store what the end of their path says, not the integral of their rates.
-        """
-        return self.heated >= 0 and bool(self.stage.costates) and not self.paths
+        """Whether the body `heated` takes what Newton's method leaves of the equations as heat."""
+        return self.heated >= 0 and bool(self.stage.costates)
 
 
 def collocation_of(iphs: IPHS, known: Quantities | None = None) -> Collocation:

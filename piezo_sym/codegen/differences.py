@@ -6,10 +6,11 @@ Two forms would lose digits: T - T_0 where T = T_0*exp(S/c_0) (`with_excess`), a
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from fractions import Fraction
 
 from piezo_sym.codegen.program import Entry, Outer, OutputRow, Program, Quantity
 from piezo_sym.expressions.calculus import add, choices, div, mul, neg, rebuilt
-from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, Sym, knots, rebuild
+from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, Num, Sym, knots, rebuild
 
 
 def with_excess(law: Expr, excesses: Mapping[tuple[Sym, Sym], Quantity]) -> Expr:
@@ -53,7 +54,8 @@ def sharp_quantity(quantity: Quantity) -> Quantity:
 
 
 def _row(row: OutputRow) -> OutputRow:
-    return replace(row, value=sharp(row.value), listed=tuple(map(sharp, row.listed)))
+    value, *listed = (sharp(_finite(tree)) for tree in (row.value, *row.listed))
+    return replace(row, value=value, listed=tuple(listed))
 
 
 def _entry(entry: Entry) -> Entry:
@@ -77,6 +79,21 @@ def sharp(node: Expr) -> Expr:
                 del kept[lost], shown[lost]
                 break
     return Add(tuple(shown.values())) if len(shown) > 1 else next(iter(shown.values()))
+
+
+def _finite(node: Expr) -> Expr:
+    """Return an expression with log(cosh(z)), the energy of a tanh, as a + log((1 + exp(-2*a))/2).
+
+    With a = abs(z) nothing overflows: cosh(z) does for abs(z) > 710.  Near 0 both forms are exact
+    to the round-off of 1; a is max(z, -z), of which each branch equals log(cosh(z)) everywhere.
+    """
+    inner = rebuild(node, _finite)
+    match inner:
+        case Call("log", (Call("cosh", (z,)),)):
+            size, half = Call("max", (z, neg(z))), Num(Fraction(1, 2))
+            far = Call("exp", (mul(Num(Fraction(-2)), size),))
+            return add(size, Call("log", (add(half, mul(half, far)),)))
+    return inner
 
 
 def _exponentials(term: Expr) -> Iterator[tuple[Expr, Expr]]:

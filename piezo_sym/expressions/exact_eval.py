@@ -41,6 +41,10 @@ class TooCloseError(ArithmeticError):
     """A sign that the precision does not decide, or a number too large to evaluate."""
 
 
+class RefusedPowerError(ValueError):
+    """A power that laws may not have, as x**(n - 1) where n = 1, although mathematics has it."""
+
+
 Value = Any  # a Fraction or an arb; inside this module fmpq takes the Fraction's place
 
 
@@ -171,10 +175,12 @@ def _power(base: Value, exponent: Fraction) -> Value:
 
 def _raised(base: Value, exponent: Value) -> Value:
     """Return a power of a number >= 0 with a positive exponent."""
-    if _sign(exponent) != 1:
-        raise ValueError("a power whose exponent is not positive")
     if _sign(base) < 0:
         raise ValueError("a power of a negative number")
+    if (sign := _sign(exponent)) != 1:
+        if sign and base == 0:
+            raise ZeroDivisionError("zero to a negative power")
+        raise RefusedPowerError("a power whose exponent is not positive")
     if isinstance(exponent, fmpq) and max(exponent.p, exponent.q) <= MAX_POWER:
         return _power(base, Fraction(int(exponent.p), int(exponent.q)))
     return arb(base) ** arb(exponent) if base != 0 else fmpq(0)

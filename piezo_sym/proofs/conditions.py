@@ -6,25 +6,28 @@ reason.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import reduce
 
 from piezo_sym.errors import quote
-from piezo_sym.expressions.calculus import mul
 from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tidying import tidied
-from piezo_sym.expressions.tree import ONE, ZERO, Call, Cmp, Expr, Pow, names, replaced
+from piezo_sym.expressions.tree import (
+    ONE,
+    ZERO,
+    Cmp,
+    Expr,
+    Pow,
+    names,
+    replaced,
+)
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.domain import spec_points
-from piezo_sym.proofs.mending import sign_factors
 from piezo_sym.proofs.obligations import NEVER, Question
+from piezo_sym.proofs.shortening import shortened, sided, without_factors
 from piezo_sym.spec.elements.ports import Body, Exchange
 from piezo_sym.spec.tables import condition_text, without_default
 
 #: Of a temperature whose law is longer, a condition has the name.
 MOST_TEXT = 24
-#: Functions that are positive wherever they have a value.
-ABOVE = frozenset({"exp", "cosh"})
 #: The slopes by S of what has to rise with it.
 SLOPES = {"energy": "T = dU/dS", "temperature": "dT/dS"}
 
@@ -107,26 +110,23 @@ def _conditions(
         claim = Cmp(">", part, ZERO)
         return not fails(Question("", question.order, (*found, *question.where), claim, claim))
 
+    def enough(condition: Cmp, claim: Cmp) -> bool:
+        where = (condition, *found, *question.where)
+        return not fails(Question("", question.order, where, claim, claim))
+
     for claim in sorted(broken, key=lambda claim: len(names(claim))):
-        bare = _at_root(_without_factors(claim, positive))
+        bare = without_factors(claim, positive)
+        short = _at_root(shortened(bare, positive))
+        bare = short if short == bare or enough(short, claim) else _at_root(bare)
         ops = (">", "<") if bare.op == "!=" else (bare.op,)
         ways = [Cmp(op, bare.left, bare.right) for op in ops]
         way = next((way for way in ways if _satisfied(way, points)), ways[0])
         warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
-        text = condition_text(way)
-        found.setdefault(way, warm[0] if warm and len(text) > MOST_TEXT else text)
+        text = condition_text(sided(way))
+        if warm and len(text) > MOST_TEXT:  # the law, which may divide where `way` multiplies
+            way, text = claim, warm[0]
+        found.setdefault(way, text)
     return found
-
-
-def _without_factors(claim: Cmp, positive: Callable[[Expr], bool]) -> Cmp:
-    """Return a claim on the sign of a product as one on those factors that are not positive."""
-    if claim.op not in {">", ">=", "!="} or claim.right != ZERO:
-        return claim
-    factors = (
-        f for f in sign_factors(claim.left) if not (isinstance(f, Call) and f.function in ABOVE)
-    )
-    kept = [f for f in factors if not positive(f)] or [claim.left]
-    return Cmp(claim.op, tidied(reduce(mul, kept)), ZERO)
 
 
 def _at_root(claim: Cmp) -> Cmp:

@@ -1,17 +1,41 @@
-"""What mends a refuted law: the condition for [domain] under which it takes power in.
+"""What mends a refuted law: conditions for [domain] under which it takes power in.
 
-Input: the law of a refuted row.  Output: the condition, or None.  A law c*f, where f takes
-power in, does so where c >= 0; factors of c that the domain keeps from being negative are left out.
+Input: the obligation of a refuted row, and the prover.  Output: conditions with which it is proved.
+A law c*f, where f takes power in, does so where c >= 0; factors of c that the domain keeps from
+being negative are left out.  A sum does so if each of its terms does: d >= 0 and d_3 >= 0 of
+d*v + d_3*v**3; terms that differ by parameters alone are one, on each branch: beta >= abs(gam) of
+beta*abs(v) + gam*v.
 For a law that jumps, what to write instead is the same for all: `JUMPS` and `MEETS`.
 """
 
-from collections.abc import Callable, Iterator
-from functools import reduce
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import replace
+from functools import cache, reduce
+from itertools import combinations
 
 from piezo_sym.errors import STICKING
-from piezo_sym.expressions.calculus import mul
-from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Mul, Neg, names
+from piezo_sym.expressions.calculus import add, mul
+from piezo_sym.expressions.exact_eval import all_hold
+from piezo_sym.expressions.tidying import tidied
+from piezo_sym.expressions.tree import ONE, ZERO, Add, Call, Cmp, Expr, Neg, Num, Sym, names
+from piezo_sym.iphs import IPHS
 from piezo_sym.network import slope_of
+from piezo_sym.proofs.branches import Branch, TooManyBranchesError, branches
+from piezo_sym.proofs.conditions import in_words, turning
+from piezo_sym.proofs.domain import spec_points
+from piezo_sym.proofs.laws import branch_questions
+from piezo_sym.proofs.obligations import Obligation, Question, SignOf
+from piezo_sym.proofs.shortening import (
+    factors_of,
+    product_of,
+    shortened,
+    sided,
+    sign_factors,
+    without_factors,
+)
+from piezo_sym.proofs.signs.cases import summands
+from piezo_sym.proofs.signs.reduce import Positive
+from piezo_sym.spec.tables import condition_text
 
 #: What to write for a law that jumps, as the end of a reason.
 JUMPS = f"; a law that jumps on purpose says discontinuous = true; {STICKING}"
@@ -20,11 +44,70 @@ MEETS = (
     "; only a law of dissipation may jump: let the two branches have one value there, as "
     "'a if x < b else a + c*(x - b)' does at b"
 )
+#: Whether a question is not answered with a proof, and whether an obligation is proved.
+Fails = Callable[[Question], bool]
+Proved = Callable[[Obligation], bool]
 #: Whether law*letter, or a law without letter, is shown to be >= 0 in the domain.
 Shown = Callable[[Expr, str], bool]
+#: A test of positivity where conditions hold besides those of the domain.
+Within = Callable[[Collection[Cmp]], Positive]
+#: A law of more branches is told no conditions of its terms.
+MOST = 16
+STRICT = {"<=": "<", ">=": ">"}
 
 
-def mending(law: Expr, letter: str, shown: Shown) -> Cmp | None:
+def mending_conditions(
+    obligation: Obligation, sign: SignOf, iphs: IPHS, fails: Fails, proved: Proved
+) -> str:
+    """Return conditions for [domain] under which the row of a law is proved, in words, or ''."""
+    order, given = obligation.questions[0].order, iphs.model.parameters.keys()
+
+    def shown(law: Expr, letter: str) -> bool:
+        claim = Cmp(">=", mul(law, Sym(letter)) if letter else law, ZERO)
+        question = Question("", order, sign.where, claim, claim)
+        return not any(map(fails, branch_questions(law, question, letter)))
+
+    def within(more: Collection[Cmp]) -> Positive:
+        def positive(part: Expr) -> bool:
+            claim = Cmp(">", part, ZERO)
+            return not fails(Question("", order, (*more, *sign.where), claim, claim))
+
+        return cache(positive)
+
+    def mended(conditions: tuple[Cmp, ...]) -> bool:
+        questions = tuple(replace(q, where=(*conditions, *q.where)) for q in obligation.questions)
+        about = replace(sign, where=(*conditions, *sign.where))
+        asked = replace(obligation, questions=questions, sign=about, rests_on=())
+        return not within(conditions)(Neg(ONE)) and proved(asked)  # -1 > 0 only in no domain
+
+    points = spec_points(iphs)
+    factor = _of_factor(sign.law, sign.letter, shown)
+    if factor and not {*names(factor)} <= frozenset[str]().union(*points):
+        factor = None  # the rate that drives a slip has no name in [domain]
+    if factor and (said := turning([factor], iphs)):
+        return said
+    ways = _ways(factor, sign, given, within)
+    conditions = next((way for way in ways if way and mended(way)), ())
+    for claim in conditions if len(conditions) > 1 else ():
+        rest = tuple(c for c in conditions if c != claim)
+        conditions = rest if rest and mended(rest) else conditions
+    if not conditions:
+        return ""
+    broken = [c for c in conditions for p in points if all_hold((c,), p) is False]
+    return in_words([condition_text(sided(c)) for c in conditions], broken, iphs)
+
+
+def _ways(
+    factor: Cmp | None, sign: SignOf, given: Collection[str], within: Within
+) -> Iterator[tuple[Cmp, ...]]:
+    """Yield conditions that may mend a law: of its factor, of its terms, of its parameters."""
+    if factor:
+        yield from ((shortened(factor, within(())),), (factor,))
+    yield _of_terms(sign, given, within)
+    yield tuple(Cmp(">=", Sym(name), ZERO) for name in names(sign.law) if name in given)
+
+
+def _of_factor(law: Expr, letter: str, shown: Shown) -> Cmp | None:
     """Return the condition under which a law has the sign of its letter; None if none is found.
 
     A conductance has the letter '' and must be >= 0.
@@ -38,12 +121,70 @@ def mending(law: Expr, letter: str, shown: Shown) -> Cmp | None:
     return Cmp(">=", reduce(mul, kept), ZERO) if any(map(names, kept)) else None
 
 
-def sign_factors(law: Expr) -> Iterator[Expr]:
-    """Yield factors whose product has the sign of a law."""
-    match law:
-        case Mul(left, right) | Div(left, right):
-            yield from (*sign_factors(left), *sign_factors(right))
-        case Neg(arg):
-            yield from (Neg(ONE), *sign_factors(arg))
-        case _:
-            yield law
+def _of_terms(sign: SignOf, fixed: Collection[str], within: Within) -> tuple[Cmp, ...]:
+    """Return conditions on the `fixed` names under which all terms take power in; () if none."""
+    try:
+        pieces = branches(sign.law, sign.where)
+    except TooManyBranchesError:
+        return ()
+    found = dict[Expr, None]()
+    for branch in pieces if len(pieces) <= MOST else ():
+        own = _of_branch(branch, sign.letter, fixed, within)
+        if own is None:
+            return ()
+        found |= dict.fromkeys(own)
+    everywhere = within(())
+    claims = (without_factors(Cmp(">=", c, ZERO), everywhere) for c in found)
+    conditions = dict.fromkeys(shortened(claim, everywhere) for claim in claims)
+    if any(tidied(add(a.left, b.left)) == ZERO for a, b in combinations(conditions, 2)):
+        return ()  # what has to be zero, as a + d in (a + d)*abs(v)
+    return _joined(c for c in conditions if names(c))
+
+
+def _of_branch(
+    branch: Branch, letter: str, fixed: Collection[str], within: Within
+) -> list[Expr] | None:
+    """Return what has to be >= 0 on a branch, also if that is seen for each sign of the letter."""
+    inside = [Cmp(STRICT.get(c.op, c.op), c.left, c.right) for c in branch.conditions]
+    own = _coefficients(branch, letter, fixed, within(inside))
+    if own is not None or not letter:
+        return own
+    found = list[Expr]()
+    for op in (">", "<"):
+        positive = within((*inside, Cmp(op, Sym(letter), ZERO)))
+        own = [] if positive(Neg(ONE)) else _coefficients(branch, letter, fixed, positive)
+        if own is None:
+            return None
+        found += own
+    return found
+
+
+def _coefficients(
+    branch: Branch, letter: str, fixed: Collection[str], positive: Positive
+) -> list[Expr] | None:
+    """Return what has to be >= 0 for a law to take power in on a branch; None if not known."""
+    total: dict[frozenset[object], list[Expr]] = {}
+    for term in summands(mul(branch.value, Sym(letter)) if letter else branch.value):
+        number, powers = factors_of(term, positive)
+        moving = {base: e for base, e in powers.items() if not {*names(base)} <= {*fixed}}
+        for base, e in moving.items():
+            if e % 2 == 0 or positive(base):
+                continue
+            if e.denominator != 1 or not positive(Neg(base)):
+                return None
+            number = -number
+        constant = {base: e for base, e in powers.items() if base not in moving}
+        total.setdefault(frozenset(moving.items()), []).append(product_of(number, constant))
+    return [tidied(add(*parts)) for parts in total.values()]
+
+
+def _joined(conditions: Iterable[Cmp]) -> tuple[Cmp, ...]:
+    """Return conditions with a + b >= 0 and a - b >= 0 as a >= abs(b)."""
+    left = list(conditions)
+    for one, other in combinations(left, 2):
+        a = tidied(mul(Num(ONE.value / 2), add(one.left, other.left)))
+        b = tidied(add(one.left, Neg(a)))
+        if isinstance(one.left, Add) and not isinstance(a, Add) and not isinstance(b, Add):
+            both = Cmp(">=", a, Call("abs", (b.arg if isinstance(b, Neg) else b,)))
+            return (*(c for c in left if c not in (one, other)), both)
+    return tuple(left)

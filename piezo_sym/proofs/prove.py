@@ -7,21 +7,25 @@ witness that was evaluated exactly in the law itself.  All else is OPEN, with th
 
 from collections.abc import Iterable
 from dataclasses import replace
+from itertools import product
 
 import sympy as sp
 
-from piezo_sym.expressions.calculus import mul
-from piezo_sym.expressions.exact_eval import all_hold
-from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Sym
+from piezo_sym.expressions.tree import Cmp, names
 from piezo_sym.iphs import IPHS
-from piezo_sym.proofs.asked import DomainOracle, simple_counterexample
-from piezo_sym.proofs.conditions import domain_conditions, in_words, turning
+from piezo_sym.proofs.asked import DomainOracle, moved_counterexample, simple_counterexample
+from piezo_sym.proofs.conditions import domain_conditions
 from piezo_sym.proofs.continuity import neighbour_questions
-from piezo_sym.proofs.domain import rounded_points, spec_points
-from piezo_sym.proofs.laws import branch_questions
-from piezo_sym.proofs.mending import mending
+from piezo_sym.proofs.domain import rounded_points
+from piezo_sym.proofs.mending import mending_conditions
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
-from piezo_sym.proofs.refutation import Finding, beside_own_values, checked_model, refutation
+from piezo_sym.proofs.refutation import (
+    Finding,
+    beside_own_values,
+    checked_model,
+    power_of_zero,
+    refutation,
+)
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import SolverLike, opinions
@@ -98,6 +102,8 @@ def _decide(
         failed, certificate = _by_intervals(obligation, iphs, obligation.sign, failed, solver)
     if failed and failed.verdict is Verdict.OPEN and obligation.letter:
         failed = _by_numbers(obligation, solver) or failed
+    if failed and failed.verdict is Verdict.OPEN and obligation.id == "temperature":
+        failed = _by_moved_numbers(obligation, iphs, solver) or failed
     if failed and failed.verdict is Verdict.OPEN:
         failed = beside_own_values(obligation.questions, iphs, solver) or failed
     failed = failed or _unproved_premise(obligation.rests_on, before)
@@ -139,6 +145,20 @@ def _by_numbers(obligation: Obligation, solver: SolverLike) -> Finding | None:
     domain = DomainOracle(conditions, question.order, solver)
     numbers = simple_counterexample(question.original, obligation.letter, domain)
     return refutation(question, numbers) if numbers else None
+
+
+def _by_moved_numbers(obligation: Obligation, iphs: IPHS, solver: SolverLike) -> Finding | None:
+    """Return the refutation of T > 0 or dT/dS > 0 by simple numbers, or None.
+
+    Solvers know functions by bounds, and their model may be none of tanh(S/S_0).
+    """
+    for question in (question for question in obligation.questions if question.rising):
+        domain = DomainOracle(question.where, question.order, solver)
+        states = [n for n in names(question.original) if n not in iphs.model.parameters]
+        for start, state in product((None, *rounded_points(iphs)), states):
+            if numbers := moved_counterexample(question.original, state, domain, start):
+                return refutation(question, numbers)
+    return None
 
 
 def _unproved_premise(
@@ -200,6 +220,8 @@ def _failure(question: Question, solver: SolverLike) -> Finding | None:
             return None
         if answer.result == "sat":
             found = checked_model(question, answer, shown)
+            if found.remedy:
+                found = power_of_zero(question, solver) or found
             return _of_derived(question, found) if question.derived else found
     return Finding(Verdict.OPEN, None, f"{question.label}: {answer.reason}")
 
@@ -223,29 +245,16 @@ def _mended_by(found: Finding, obligation: Obligation, iphs: IPHS, solver: Solve
     """Return what mends a row, as the end of its reason: a condition, else the finding's remedy."""
     refuted, conditions = found.verdict is Verdict.REFUTED, ""
     if refuted and obligation.sign:
-        conditions = _mending_condition(obligation.sign, obligation.questions, iphs, solver)
+        conditions = mending_conditions(
+            obligation,
+            obligation.sign,
+            iphs,
+            lambda q: _failure(q, solver) is not None,
+            lambda o: _decide(o, iphs, (), solver)[0].verdict is Verdict.PROVED,
+        )
     if found.remedy or (refuted and obligation.id in DECLARED):
         conditions += _domain_conditions(obligation, iphs, solver)
     return conditions or (f"; {found.remedy}" if found.remedy else "")
-
-
-def _mending_condition(
-    sign: SignOf, questions: tuple[Question, ...], iphs: IPHS, solver: SolverLike
-) -> str:
-    """Return the condition under which a refuted law is passive, as the end of a reason."""
-
-    def shown(law: Expr, letter: str) -> bool:
-        claim = Cmp(">=", mul(law, Sym(letter)) if letter else law, ZERO)
-        question = Question("", questions[0].order, sign.where, claim, claim)
-        return _first_failure(branch_questions(law, question, letter), solver) is None
-
-    condition = mending(sign.law, sign.letter, shown)
-    if condition is None:
-        return ""
-    if said := turning([condition], iphs):
-        return said
-    broken = any(all_hold((condition,), point) is False for point in spec_points(iphs))
-    return in_words([condition_text(condition)], [condition] * broken, iphs)
 
 
 def _domain_conditions(obligation: Obligation, iphs: IPHS, solver: SolverLike) -> str:

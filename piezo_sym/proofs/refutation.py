@@ -8,9 +8,15 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple, final
 
-from piezo_sym.expressions.exact_eval import TooCloseError, Value, all_hold, value_of
+from piezo_sym.expressions.exact_eval import (
+    RefusedPowerError,
+    TooCloseError,
+    Value,
+    all_hold,
+    value_of,
+)
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, Expr, names
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, names, walk
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.continuity import jumps
 from piezo_sym.proofs.domain import spec_points
@@ -19,6 +25,9 @@ from piezo_sym.proofs.obligations import Question
 from piezo_sym.proofs.solvers import Answer, SolverLike
 from piezo_sym.report import Verdict
 from piezo_sym.spec.tables import condition_text
+
+#: The remedy for a power with an exponent that need not be positive.
+POSITIVE = "a base without kinks, which is positive, takes any exponent"
 
 
 @final
@@ -71,8 +80,28 @@ def checked_model(question: Question, answer: Answer, shown: tuple[str, ...]) ->
     values = {name: value for name, value in answer.model.items() if name in question.order}
     if not (all_hold(question.where, values) and _is_broken(question, values)):
         reason = f"{question.label}: {_why_undecided(question, values)}"
-        return Finding(Verdict.OPEN, None, reason)
+        return Finding(Verdict.OPEN, None, reason, _remedy(question.law, values))
     return refutation(question, {name: value for name, value in values.items() if name in shown})
+
+
+def power_of_zero(question: Question, solver: SolverLike) -> Finding | None:
+    """Return the refutation of a law by a power of zero with a negative exponent, or None.
+
+    Laws may not have powers with any exponent <= 0, but mathematics has all others: they are not
+    shown as counterexamples.
+    """
+    for part in walk(question.law) if question.law else ():
+        match part:
+            case Call("pow", (base, exponent)):
+                claim = Cmp(">=", exponent, ZERO)
+                where = (*question.where, Cmp("=", base, ZERO))
+                asked = replace(question, where=where, claim=claim, original=claim)
+                answer = solver.ask(replace(asked, keep_all=True).query)
+                found = answer.model and checked_model(asked, answer, asked.query.variables)
+                if found and found.witness:
+                    reason = f"{found.reason} is the exponent of {spell(base)} = 0"
+                    return found._replace(reason=reason)
+    return None
 
 
 def _why_undecided(question: Question, values: Mapping[str, Value]) -> str:
@@ -85,7 +114,14 @@ def _why_undecided(question: Question, values: Mapping[str, Value]) -> str:
             at = ", ".join(f"{name} = {value}" for name, value in values.items() if name in about)
             what = spell(condition.left) if tie else condition_text(condition)
             return f"it is false at {at}, where '{what}' has no value"
+    if _remedy(question.law, values):
+        return "laws may have no power of what may be zero with another exponent"
     return "bounds on the functions in it do not decide it"
+
+
+def _remedy(law: Expr | Cmp | None, values: Mapping[str, Value]) -> str:
+    """Return the remedy for a power that laws may not have, if one is met at a point, else ''."""
+    return POSITIVE if law and isinstance(_fault(law, values), RefusedPowerError) else ""
 
 
 def _is_broken(question: Question, values: Mapping[str, Value]) -> bool:
@@ -98,15 +134,19 @@ def _is_broken(question: Question, values: Mapping[str, Value]) -> bool:
 
 
 def _has_no_value(law: Expr | Cmp, values: Mapping[str, Value]) -> bool:
-    """Return whether a law, or a side of a comparison, certainly has no value."""
+    """Return whether a law, or a side of a comparison, certainly has no value in mathematics."""
+    fault = _fault(law, values)
+    return not (fault is None or isinstance(fault, TooCloseError | RefusedPowerError))
+
+
+def _fault(law: Expr | Cmp, values: Mapping[str, Value]) -> Exception | None:
+    """Return why a law, or a side of a comparison, has no value, or None."""
     try:
         for side in (law.left, law.right) if isinstance(law, Cmp) else (law,):
             value_of(side, values)
-    except TooCloseError:
-        return False
-    except (ArithmeticError, ValueError):
-        return True
-    return False
+    except (ArithmeticError, ValueError) as fault:
+        return fault
+    return None
 
 
 def refutation(question: Question, values: Mapping[str, Value]) -> Finding:

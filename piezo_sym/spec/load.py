@@ -9,7 +9,7 @@ from pathlib import Path
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.spec.checks.names import check_model_name
 from piezo_sym.spec.model import Model, Reader
-from piezo_sym.spec.source import find, shipped
+from piezo_sym.spec.source import find, read, real, shipped
 
 STARTER = Path(__file__).with_name("starter.toml")
 OWN_NAME = 'name  = "starter"'
@@ -31,7 +31,13 @@ def load(spec: str | Path) -> Model:
     UsageError
         If `spec` is neither text nor a path.
     """
-    return Reader().file(find(spec))
+    path = find(spec)
+    return of_file(path, read(path))
+
+
+def of_file(path: Path, text: str) -> Model:
+    """Return the model of a spec file with this text; its components are read. Raises as `load`."""
+    return Reader().text(text, path.name, path.parent, (real(path),))
 
 
 def parse(text: str, source: str = "spec") -> Model:

@@ -64,11 +64,16 @@ class Template:
 
 def shape_hash(data: Mapping[str, Any]) -> str:
     """Return the SHA-256 of a spec without its values; proofs and programs depend on no more."""
-    tables = {
-        name: {word: _without_value(entry, *TABLES[name]) for word, entry in data[name].items()}
-        for name in TABLES.keys() & data.keys()
-    }
-    return spec_hash({**data, **tables})
+    return spec_hash(without_values(data))
+
+
+def without_values(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the data of a spec with 1 for each of its values."""
+    made = dict(data)
+    for name, of_entry in TABLES.items():
+        if isinstance(table := data.get(name), Mapping):
+            made[name] = {word: _without_value(entry, *of_entry) for word, entry in table.items()}
+    return made
 
 
 def _without_value(entry: Any, key: str, default: float | None) -> Any:

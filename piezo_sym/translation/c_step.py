@@ -15,9 +15,8 @@ and most tables behind it serve Newton's method alone, and `bends`, which a line
 announces, says where the engine splits means: of them nothing is said, but that they are in the
 grammar, and that what they write fills its array. Where the system has stops, a table tells of each
 the bank, whether its lanes have drives of their own, and its inner state; `path_parameters` are
-stiffness and limit of the inner state, `drives` the rates of coordinates. Without stops, where
-there are stores and bodies, `costates` are those of all states, and a table tells which states are
-entropies.
+stiffness and limit of the inner state, `drives` the rates of coordinates. Where there are stores
+and bodies, `costates` are those of all states, and a table tells which states are entropies.
 """
 
 import ast

@@ -62,7 +62,7 @@ def proved_step(iphs: IPHS) -> Proved:
     slots["g"] = (*slots["integrands"], *given_paths)
     paths = tuple(_paths(read, stops, slots, values))
     stage = {"rhs": listed["rhs"], "ledger": ledger.values()}
-    if not stops and all(any(iphs.circuit.of(kind)) for kind in (Storage, Body)):
+    if all(any(iphs.circuit.of(kind)) for kind in (Storage, Body)):
         slots["costates"] = iphs.system.states
         stage["costates"] = [read(costate) for costate in iphs.system.E]
     for function, rows in stage.items():

@@ -3,6 +3,7 @@
 Input: values.  Output: values.  What a function needs of its argument is noted in `Field.needs`.
 Identities used, and their premises:
 exp(a + b) = exp(a) exp(b); exp(c log x) = x**c (of `raised` 0 where x = 0); log(exp z) = z;
+log(c + c exp(2 z)) = log(2 c) + z + log(cosh z) for c > 0 (`by_cosh`);
 log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0; (x**(1/n))**n = x for x >= 0;
 (x**2)**(1/2) = abs(x); f(-x) = -f(x) or f(x) where a record says that f is odd or even.
 """
@@ -157,6 +158,19 @@ def _log_of_product(arg: Value) -> Value:
         log = gen.arg if gen.kind == "exp" else field.generator("log", field.raised(g, 1))
         parts += [log * field.number(e)] if log else []
     return field.total(parts)
+
+
+def by_cosh(arg: Value) -> Value | None:
+    """Return log(2 c) + z + log(cosh z) for the logarithm of c + c exp(2 z), c > 0, or None."""
+    field, factor = arg.field, arg.terms.get(())
+    others = [mono for mono in arg.terms if mono]
+    if factor is None or factor <= 0 or len(others) != 1 or arg.terms[others[0]] != factor:
+        return None
+    gens = [(field.gens[g], e) for g, e in others[0]]
+    if not all(gen.kind == "exp" and gen.arg for gen, _ in gens):
+        return None
+    z = field.total([gen.arg * field.number(Fraction(e) / 2) for gen, e in gens if gen.arg])
+    return field.total([call("log", field.number(2 * factor)), z, call("log", call("cosh", z))])
 
 
 def _even_or_odd(function: str, arg: Value) -> Value:

@@ -264,6 +264,8 @@ class _Function:
         match name, args, words:
             case "where", [test, then, other], []:
                 return self.read.choice(test, then, other)
+            case "float64", [arg], []:  # a float, or an array of floats, stays one
+                return self.read.numeric(arg)
             case "sum", [arg], ["axis=0"] if self.own is None:  # a lane in a sum is no lane's own
                 value, shape = self.read.numeric(arg)
                 if shape.kind == "lanes":

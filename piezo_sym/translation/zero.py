@@ -12,7 +12,7 @@ from itertools import product
 
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
-from piezo_sym.translation.functions import power
+from piezo_sym.translation.functions import by_cosh, power
 from piezo_sym.translation.numerator import divisors, vanishes, vanishes_with
 from piezo_sym.translation.possible import impossible
 from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
@@ -36,7 +36,15 @@ def is_zero(value: Value, *, edges: Edges = frozenset()) -> bool:
             raise
     spelled = (_spelled(value, letter) for letter in sorted(letters, reverse=True))
     new = next((new for new in spelled if new != value), None)  # none if all are in sums over lanes
-    return new is not None and is_zero(new, edges=edges)
+    new = _by_cosh(value) if new is None else new
+    return new != value and is_zero(new, edges=edges)
+
+
+def _by_cosh(value: Value) -> Value:
+    """Return a value with the logarithms of 1 + exp(2*z) by those of cosh(z)."""
+    logs = ((g, value.field.gens[g]) for g in value.parts)
+    found = ((g, by_cosh(gen.arg)) for g, gen in logs if gen.kind == "log" and gen.arg)
+    return put(value, {g: new for g, new in found if new is not None})
 
 
 def edges_of(value: Value) -> Edges:

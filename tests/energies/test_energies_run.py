@@ -93,3 +93,34 @@ def test_a_gas_that_is_not_warm_everywhere_is_refuted_with_a_state(energy):
     (row,) = (r for r in report.rows if (r.id, r.element) == ("temperature", "gas"))
     assert row.verdict.value == "REFUTED"
     assert "S" in row.witness
+
+
+SOFT = """
+[model]
+name = "soft"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+F_s = { value = 2.0, unit = "N" }
+w = { value = 1e-4, unit = "m" }
+[domain]
+assume = ["w > 0"]
+[initial]
+q = 0.2
+[elements]
+mass = { kind = "mass", at = "tip", mass = "m", state = "p" }
+spring = { kind = "spring", between = ["tip", "wall"], force = "F_s*tanh(q/w)", state = "q" }
+"""
+
+
+def test_the_energy_of_a_tanh_is_finite_far_from_rest_and_exact_near_it():
+    """q = 2000 w: cosh(q/w) overflowed."""
+    model = parse(SOFT)
+    process.examined(model).raise_if_not_proved()
+    run = simulate(model, duration=1.2, rtol=1e-6)  # through rest, to the other side
+    assert run.q.values[-1] < -0.01
+    z = run.q.values / 1e-4
+    by_hand = run.p.values**2 / 2 + 2e-4 * (abs(z) - np.log(2) + np.log1p(np.exp(-2 * abs(z))))
+    assert np.allclose(run.energy.values, by_hand, rtol=1e-14, atol=0)
+    assert float(np.abs(run.energy_residual).max()) <= 1e-12 * float(run.energy.max())
+    near = simulate(model, duration=1e-9, initial={"q": 1e-9}).energy.values[0]
+    assert near == pytest.approx(2e-4 * (1e-5) ** 2 / 2, rel=0, abs=1e-15 * 2e-4)

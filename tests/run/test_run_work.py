@@ -9,6 +9,36 @@ import numpy as np
 import pytest
 
 from piezo_sym import load, simulate, sine
+from piezo_sym.spec.load import parse
+
+#: A gas behind a valve whose law has a knot at rest, where round-off changes the flow's sign.
+CHAMBER = """
+[model]
+name = "chamber"
+title = "A chamber with a bladder, behind a valve"
+[parameters]
+V_0 = { value = 0.2, unit = "l" }
+p_0 = { value = 60, unit = "bar" }
+q_1 = { value = 1.0, unit = "l/min" }
+p_1 = { value = 1.0, unit = "bar" }
+T_0 = { value = 313.15, unit = "K" }
+c   = { value = 200, unit = "J/K" }
+[inputs]
+p_in = { unit = "bar" }
+[domain]
+assume = ["V < V_0", "0 <= q_1", "0 < p_1", "V_0 > 0", "p_0 > 0"]
+[initial]
+V = 1e-5
+[elements]
+supply  = { kind = "pressure_source", between = ["in", "tank"], input = "p_in" }
+bladder = { kind = "accumulator", between = ["port", "tank"], state = "V", pressure = "GAS" }
+oil     = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+[elements.valve]
+kind    = "orifice"
+between = ["in", "port"]
+flow    = "table(dp, -50*p_1, -6*q_1, -p_1, -q_1, 0, 0, p_1, q_1, 50*p_1, 6*q_1)"
+heats   = "oil"
+""".replace("GAS", "p_0*((1 - V/V_0)**(-1.3) - 1)")
 
 BOUC_WEN = Path(__file__).parents[1] / "benchmarks" / "bouc_wen.toml"
 
@@ -26,3 +56,21 @@ def test_a_solve_ends_where_its_residuals_are_small():
     run = simulate("oscillator", initial={"q": 1e-3}, duration=10.0, rtol=1e-5, times=[10.0])
     assert run.attrs["newton_iterations"] < 2 * run.attrs["accepted_steps"]
     assert np.abs(run.energy_residual).max() < 1e-15 * run.energy.max()
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-6])
+def test_rest_at_a_knot_takes_few_steps(rtol):
+    """The sign of a flow that is round-off changes without end: no step is shorter for that."""
+    inputs = {"p_in": 40e5}
+    run = simulate(parse(CHAMBER), inputs=inputs, duration=30.0, rtol=rtol, times=[30.0])
+    assert run.attrs["accepted_steps"] < 100  # 620 at 1e-6 before
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6])
+def test_what_is_left_of_equations_with_stops_becomes_heat(rtol):
+    inputs = {"V_in": sine(75.0, 1.0, offset=75.0)}
+    run = simulate("stack_maxwell", inputs=inputs, duration=3.0, rtol=rtol)
+    solves = run.attrs["accepted_steps"] + run.attrs["halvings"] + 1001
+    assert run.attrs["newton_iterations"] < 2.5 * solves  # 3.5 and more to round-off
+    assert np.abs(run.energy_residual).max() < 1e-14 * run.energy.max()
+    assert np.abs(run.entropy_residual).max() < 1e-14 * run.entropy.max()

@@ -16,6 +16,7 @@ from piezo_sym.translation.expressions import PLAIN, Expressions
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.numerator import vanishes, vanishes_with
 from piezo_sym.translation.witness import UNDECIDED, WitnessPoint
+from piezo_sym.translation.zero import is_zero
 
 SMOOTH = ("exp", "log", "sqrt", "sin", "cos", "tanh", "expm1", "atan", "sinh", "cosh", "erf")
 CALLS = (*SMOOTH, "abs", "sign")
@@ -178,3 +179,34 @@ def test_questions_of_zero_end_however_many_cases_a_row_has():
     limit = patch.object(translation_field, "MOST_WORK", field.work + 1_000)
     with limit, pytest.raises(NotShownError, match="too large"):
         assert not any(vanishes(value) for _ in range(1_000))
+
+
+LARGEST = "maximum(x, -x)"
+
+
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        (f"{LARGEST} + log(0.5 + 0.5*exp(-2*{LARGEST}))", True),
+        ("x + log(0.5 + 0.5*exp(-2*x))", True),
+        ("log(0.5*exp(2*x) + 0.5) - x", True),
+        ("log((1 + exp(2*x))/2) - x", True),
+        (f"{LARGEST} + log(0.5 + 0.5*exp(2*{LARGEST}))", False),
+        (f"{LARGEST} + log(0.5 + 0.5*exp(-{LARGEST}))", False),
+        (f"{LARGEST} + log(0.5 + 0.4*exp(-2*{LARGEST}))", False),
+        (f"{LARGEST} + log(1 + exp(-2*{LARGEST}))", False),
+        (f"{LARGEST} + log(0.5 - 0.5*exp(-2*{LARGEST}))", False),
+        ("minimum(x, -x) + log(0.5 + 0.5*exp(-2*maximum(x, -x)))", False),
+        ("x + log(0.5 + 0.5*exp(-2*y))", False),
+        ("x + log(0.5 + 0.5*exp(-2*x)*exp(y))", False),
+    ],
+)
+def test_the_energy_of_a_tanh_without_overflow_is_the_logarithm_of_cosh(text, same):
+    _, read = reader()
+    value, other = (read.numeric(ast.parse(t, mode="eval").body)[0] for t in (text, "log(cosh(x))"))
+    assert is_zero(value - other) == same
+    if "0.5 - 0.5" in text:  # no value at some points
+        return
+    trees = [ast.parse(t, mode="eval").body for t in (text, "log(cosh(x))")]
+    sides = [[number(t, {"x": x, "y": 1.0}) for x in (-2.0, -0.3, 0.4, 3.0)] for t in trees]
+    assert (sides[0] == pytest.approx(sides[1], rel=1e-12)) == same

@@ -6,11 +6,12 @@ identifiers or inside string literals.
 """
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import accumulate
 from typing import final
 
 from piezo_sym.codegen.layout import Places, places, size_in_words, term_lines
+from piezo_sym.codegen.numpy.divisors import divisors
 from piezo_sym.codegen.numpy.head import RATES, head
 from piezo_sym.codegen.numpy.style import NUMPY, numpy_text
 from piezo_sym.codegen.program import (
@@ -48,6 +49,9 @@ class _Printer:
     def __init__(self, program: Program) -> None:
         self.program = program
         self.lanes = program.lane_names()
+        self.parameters = frozenset(field.name for field in program.parameters)
+        margins = (limit.margin for limit in program.limits if limit.strict)
+        self.positive = frozenset(m.name for m in margins if isinstance(m, Sym))
         self.arrays = _names_with_lane_axis(program)
         words = {word: fresh(word, program.taken) for word in ("x", "u", "p", "out", "lanes")}
         self.x, self.u, self.p, self.out, self.index = words.values()
@@ -123,7 +127,7 @@ class _Printer:
         arguments: Sequence[str],
         doc: str,
         function: ModuleFunction | None,
-        roots: Iterable[Node],
+        roots: Collection[Node],
     ) -> list[str]:
         """Return the first lines of a function: its head, unpacked arguments and quantities."""
         quantities, used = needed(self.program.quantities, roots)
@@ -139,7 +143,9 @@ class _Printer:
         lines += self.states.definitions()
         rows = function.rows if function else ()
         listed = {name for row in rows for part in row.listed for name in names(part)}
-        lines += self._unpacking(used, f"{self.x}.ndim" if "x" in arguments else "1", listed)
+        dimensions = f"{self.x}.ndim" if "x" in arguments else "1"
+        floats = divisors(roots, quantities, self.parameters, self.positive) - listed
+        lines += self._unpacking(used, dimensions, listed, floats)
         note = ""
         for quantity in quantities:
             if quantity.note != note:
@@ -149,17 +155,24 @@ class _Printer:
         return [*lines, "# result"] if quantities and not (function and function.scalar) else lines
 
     def _unpacking(
-        self, used: frozenset[str], dimensions: str, listed: Collection[str]
+        self,
+        used: frozenset[str],
+        dimensions: str,
+        listed: Collection[str],
+        floats: Collection[str],
     ) -> Iterator[str]:
-        """Yield the lines that unpack used names from arguments; `listed` ones are made arrays."""
+        """Yield the lines that unpack used names from arguments.
+
+        Those `listed` are made arrays, and `floats` NumPy's numbers.
+        """
         program = self.program
-        for field in program.parameters:
-            if field.name in used and field.bank:
-                arguments = f"{self.p}.{field.name}, {field.bank}_count, {dimensions}"
+        for field in (field for field in program.parameters if field.name in used):
+            value = f"{self.p}.{field.name}"
+            if field.bank:
                 ones = f"*np.ones({field.bank}_count)" if field.name in listed else ""
-                yield f"{field.name} = _lanes({arguments}){ones}"
-            elif field.name in used:
-                yield f"{field.name} = {self.p}.{field.name}"
+                value = f"_lanes({value}, {field.bank}_count, {dimensions}){ones}"
+            value = f"np.float64({value})" if field.name in floats else value
+            yield f"{field.name} = {value}"
         for n, slot in enumerate(self.states.slots):
             if slot.label in used:
                 yield f"{slot.label} = {self.x}[{self.states.index(n)}]"

@@ -131,7 +131,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     LANE(&m->iterations, 0, lane) = (double)run->iterations;
     b->lane[lane] = (MODEL(lane)){.run = run, .segment = run->segments, .t = run->t, .phase = BEGIN};
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
-    b->lane[lane].steady = b->lane[lane].ahead = HUGE_VAL;
+    b->lane[lane].steady = b->lane[lane].ahead = b->lane[lane].hard = HUGE_VAL;
     b->lane[lane].kept = -HUGE_VAL;
     b->lane[lane].which = b->lane[lane].turned = -1;
     for (long k = 0; k < m->branches; ++k)

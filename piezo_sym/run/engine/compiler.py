@@ -67,7 +67,7 @@ def compilers() -> Iterator[Compiler]:
     """Yield the installed compilers that work, best first."""
     commands = [*map(_command, (os.environ.get("CC", ""), "cc", "gcc", "clang"))]
     if find_spec("ziglang") is not None:
-        commands.append((sys.executable, "-m", "ziglang", "cc"))
+        commands.append((sys.executable, "-P", "-m", "ziglang", "cc"))
     for command in filter(None, dict.fromkeys(commands)):
         if version := _version(command):
             yield Compiler(command, version)

@@ -86,6 +86,9 @@ static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
     return found;
 }
 
+/* How far behind a step a switch is looked for, in its lengths. */
+enum { AHEAD = 3 };
+
 /*
  * The time from the end of a lane's step to the next sign change of a switching function that approaches
  * zero there, or HUGE_VAL: where a cubic through its last four values is zero, if within AHEAD steps.

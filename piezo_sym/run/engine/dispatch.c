@@ -149,8 +149,10 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
             l->known = 0.0;
             if (b->fixed > 0.0)
                 MODEL(refuse_fixed)(b, lane);
-            else
+            else {
+                l->hard = l->length;
                 MODEL(refuse)(b, lane, 0.25 * l->length);
+            }
             continue;
         }
         l->known = l->length;

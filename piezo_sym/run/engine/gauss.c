@@ -209,7 +209,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
 #endif /* PATHS */
 #if defined(COSTATES)
     PLACE(costate, n);
-    PLACE(integrand, m->means);
+    PLACE(integrand, m->given);
 #endif /* COSTATES */
     m->fresh = m->slope; /* of one run there is no lane that keeps its slopes */
     if (REAL_WIDTH > 1)

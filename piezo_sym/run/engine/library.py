@@ -22,7 +22,7 @@ from subprocess import TimeoutExpired
 from typing import Literal, final
 
 from piezo_sym.errors import EngineError, FileError, one_line
-from piezo_sym.files import path_text, read_text, temporary_folder
+from piezo_sym.files import path_text, read_text, temporary_folder, user_cache
 from piezo_sym.run.engine.c_sources import (
     c_source,
     functions_source,
@@ -159,9 +159,7 @@ def library(sources: Sources) -> Path:
 
 def cache_folder() -> Path:
     """Return the folder of all compiled modules."""
-    import platformdirs
-
-    return Path(platformdirs.user_cache_dir("piezo_sym")) / "compiled"
+    return user_cache("compiled")
 
 
 def _flags(sources: Sources, flags: tuple[str, ...]) -> tuple[str, ...]:

@@ -34,7 +34,7 @@ static void MODEL(stuck)(MODEL(batch) *b, int lane)
     SET(b->m.over, lane, 1);
     l->stuck = 1;
     l->solves = 0;
-    l->refused = 0;
+    l->refused = l->idle = 0;
     l->known = 0.0;
     l->h = b->first;
     l->which = -1;
@@ -65,23 +65,6 @@ static void MODEL(refuse_fixed)(MODEL(batch) *b, int lane)
         MODEL(end_run)(b, lane, 1);
     else
         MODEL(refuse)(b, lane, 0.5 * l->whole);
-}
-
-/*
- * How much longer the next step may be, by the error of this one, which is small for a power of the length
- * that is known; and by that of another, for errors that earlier steps left in stiff states depend on
- * no length.
- */
-static double MODEL(growth)(const MODEL(lane) *l, double error, int over)
-{
-    if (!(error > 0.0))
-        return error == 0.0 ? 8.0 : 0.25;
-    const double usual = PART_OF(over) * pow(error, over ? OVER_KINKS : -0.5 / STAGES);
-    const double change = l->length / l->compared;
-    if (over || !(error < SMALL && l->error > 0.0 && change > LONGER))
-        return usual;
-    const double power = fmax(log(error / l->error) / log(change), LEAST_POWER);
-    return fmax(usual, fmin(PART_OF(over) * pow(error / SMALL, -1.0 / power), MOST_LONGER));
 }
 
 /* Accept a step; samples within it come first.  Returns whether to book it now. */
@@ -128,51 +111,30 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;
     MODEL(run) *run = l->run;
-    const int last = l->last && l->step == l->whole;
     const double before = l->t;
     l->t = MODEL(step_end)(b, l);
     run->t = l->t;
     ++run->steps;
     run->iterations = (long)LANE(&b->m.iterations, 0, lane);
     const double most = l->refused ? 1.0 : 4.0; /* a length that was just refused is not tried again */
-    l->refused = l->t > before ? 0 : l->refused + 1; /* switches may lead back to each other at one time */
+    l->refused = 0;
+    l->idle = l->t > before ? 0 : l->idle + 1; /* switches may lead back to each other at one time */
     l->crawled = l->t - before > CRAWL * fabs(b->stop) ? 0 : l->crawled + 1;
     l->phase = STEP;
     if (b->fixed > 0.0) {
         l->halved = l->h < b->fixed ? l->halved : 0;
         l->h = fmin(b->fixed, 2.0 * l->h);
-    } else {
-        if (l->turned >= 0 && !l->aimed) { /* the length its error allows after a switch, the shortest of recent ones */
-            double *const after = &LANE(b->after, l->turned, lane);
-            *after = fmin(l->whole * fmin(l->longer, most), *after > 0.0 ? 1.5 * *after : HUGE_VAL);
-            LANE(b->tried, l->turned, lane) = l->whole;
-            LANE(b->tried_error, l->turned, lane) = l->latest;
-        }
-        l->compared = l->which < 0 ? l->step : LANE(b->tried, l->which, lane);
-        l->error = l->which < 0 ? l->latest : LANE(b->tried_error, l->which, lane);
-        l->turned = l->which;
-        if (l->which >= 0) {
-            const double after = LANE(b->after, l->which, lane);
-            l->h = after > 0.0 ? after : fmin(l->longer, 0.3) * l->whole;
-        } else if (!last) {
-            l->h = fmin(l->step * fmin(l->longer, most), SUDDEN * l->steady);
-            l->steady = l->step * l->longer;
-        }
-        l->aimed = OVER_SWITCH * l->ahead < l->h;
-        if (l->aimed)
-            l->h = OVER_SWITCH * l->ahead;
-        l->ahead = HUGE_VAL;
-    }
+        l->known = l->which >= 0 ? 0.0 : l->known;
+    } else
+        MODEL(next_length)(b, l, lane, most);
     l->behind = 1;
     l->settled = 0;
-    if (l->which >= 0)
-        l->steady = HUGE_VAL;
     MODEL(sample_here)(b, lane);
     if (l->t >= b->stop)
         MODEL(end_run)(b, lane, 0);
     else if (l->crawled > MOST_CRAWLED && b->fixed == 0.0)
         MODEL(end_run)(b, lane, 1);
-    else if (l->refused > MOST_REFUSED)
+    else if (l->idle > MOST_REFUSED)
         MODEL(stuck)(b, lane);
     else if (l->t >= l->segment->stop) {
         ++l->segment;
@@ -192,7 +154,7 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, doubl
             SET(*turns, lane, 1);
             l->known = 0.0;
             l->phase = STEP;
-            if (++l->refused > MOST_REFUSED)
+            if (++l->idle > MOST_REFUSED)
                 MODEL(stuck)(b, lane);
             return 0;
         }

@@ -61,9 +61,12 @@ typedef struct {
     double steady; /* the length that the error of the step before allows */
     double latest;          /* the error of this step */
     double compared, error; /* of another, the last or the last one after the same switch; 0: none */
+    double hard;   /* about how long a step cannot be solved, as one before could not; or HUGE_VAL */
+    double aimed;  /* the length of a step but for a switch, just behind which it is to end; or 0 */
     double ahead;  /* time from the end of the step to the next switch, or HUGE_VAL */
     int phase, behind, predicted, last, cuts, refused, halved;
-    int aimed;   /* whether the step is to end just behind a switch */
+    int idle;    /* switches in a row at one time */
+    int aims;    /* steps in a row that were to end behind a switch */
     int stuck;   /* whether steps go over kinks because they could not end at them */
     int crawled; /* steps in a row that are hardly longer than round-off of the time */
     int to_round_off; /* how many more steps are solved to round-off: see residual.c */
@@ -116,27 +119,10 @@ enum { MOST_HALVED = 1000 };
 #define SHORTEST_PART 1e-15
 /* A mode at kinks is kept for TRIED solves; the slower one is tried anew after AGAIN comparisons. */
 enum { TRIED = 32, AGAIN = 12 };
-/* The step length is proportional to about this power of the error where steps contain kinks. */
-#define OVER_KINKS (-1.0 / 3.0)
-/* Safety factor: the next step is this times the one whose estimated error equals the tolerance. */
-#define PART_OF(over) ((over) ? 0.9 : 0.82)
-/* An error may be small by chance: a step is at most this much longer than the last one allowed. */
-#define SUDDEN 1.5
-/*
- * Below an error of SMALL, one step that was longer than another by LONGER tells the power of the length
- * that errors are proportional to, if it is above LEAST_POWER; the next is at most MOST_LONGER times longer.
- */
-#define SMALL 0.1
-#define LONGER 1.05
-#define LEAST_POWER 3.0
-#define MOST_LONGER 3.0
 /* Rates before a switch predict those after it, in a step at most this much longer than theirs. */
 #define LIKE_BEFORE 2.0
 /* A refused step is repeated up to where a path functional begins to yield, if before this part. */
 #define YIELDS 0.999
-/* How far behind a step a switch is looked for, in its lengths; and how far a step goes over it. */
-enum { AHEAD = 3 };
-#define OVER_SWITCH 1.1
 /* A switch within this fraction of a step from its end, or its beginning, counts as there. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
