@@ -6,6 +6,8 @@ remedy, or nothing.
 
 import re
 
+#: How many characters before and behind the fault are looked at.
+NEAR = 150
 #: Patterns of a line in which ! marks the fault, and what to write there; the first one counts.
 HINTS = tuple(
     (re.compile(pattern), hint)
@@ -39,6 +41,7 @@ def remedy_at(text: str, fault: str) -> str:
     lines = text.split("\n")
     number, column = (int(place[1]), int(place[2])) if place else (len(lines), len(lines[-1]) + 1)
     line = lines[min(number, len(lines)) - 1]
-    marked = f"{line[: column - 1]}!{line[column - 1 :]}".rstrip()
+    first = max(0, column - 1 - NEAR)  # of a hostile text, a line may be all of it
+    marked = f"{line[first : column - 1]}!{line[column - 1 : column - 1 + NEAR]}".rstrip()
     found = ((pattern.search(marked), hint) for pattern, hint in HINTS)
     return next((match.expand(hint).strip() for match, hint in found if match), "")
