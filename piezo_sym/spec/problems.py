@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from piezo_sym.errors import SpecError, listing, nearest, quote, similar
+from piezo_sym.expressions.grammar import MAX_LENGTH
 from piezo_sym.expressions.incomplete import conditions_of
 from piezo_sym.spec.elements import KINDS
 from piezo_sym.spec.fields import Tables
@@ -138,7 +139,8 @@ def _number(value: object) -> str:
 def _expected(detail: ErrorDetails) -> str:
     if detail["type"] == "tuple_type" and detail["loc"][-1] == "assume":
         given = detail["input"]
-        parts = conditions_of(given) if isinstance(given, str) else ["d >= 0"]
+        short = isinstance(given, str) and len(given) <= MAX_LENGTH
+        parts = conditions_of(given) if short else ["d >= 0"]
         return f"a list of conditions, such as {json.dumps(parts)}"
     number = detail["type"] == "string_type" and isinstance(detail["input"], int | float)
     if number and "elements" in detail["loc"]:
