@@ -127,10 +127,18 @@ def read_law(text: str) -> Expr:
 
 def read_condition(text: str) -> Cmp:
     """Return the tree of one comparison."""
-    check_characters(text)
-    if len(several := conditions_of(text)) > 1:
-        remedy = f"write each condition as one of its own: {listing(map(json.dumps, several))}"
-        raise RefusedError("is not one comparison", remedy=remedy)
+    try:
+        return _read_condition(text)
+    except RefusedError:
+        apart = len(text) <= MAX_LENGTH and " if " not in text  # a choice has one of its own
+        several = conditions_of(text) if apart else [text]
+        if len(several) < 2:
+            raise
+    remedy = f"write each condition as one of its own: {listing(map(json.dumps, several))}"
+    raise RefusedError("is not one comparison", remedy=remedy)
+
+
+def _read_condition(text: str) -> Cmp:
     body = _parsed(text)
     if not isinstance(body, ast.Compare):
         remedy = "write 'max(a, b) > 0' for 'a > 0 or b > 0'" * isinstance(body, ast.BoolOp)

@@ -76,7 +76,6 @@ def test_its_energy_is_the_integral_of_the_force(law, n):
 @pytest.mark.parametrize(
     ("law", "domain", "values"),
     [
-        (HERTZ, KEPT.format(">= 0"), {}),  # 0**0
         (HERTZ, KEPT.format(">= -1"), {}),
         (HERTZ, KEPT.format("<= 0"), {"n": -1.0}),  # infinite where the gap closes
         (HERTZ, "n >= 1", {}),  # x_o may be 0
@@ -91,6 +90,13 @@ def test_a_power_that_has_no_value_somewhere_is_not_proved(law, domain, values):
     found = rows(spec(law, domain, **values))
     assert found["welldef", "ball"].verdict is Verdict.REFUTED
     assert found["energy", ""].verdict is not Verdict.PROVED
+
+
+def test_zero_to_the_power_of_zero_is_open():
+    """It has a value by convention, and no law is continuous in it."""
+    found = rows(spec(HERTZ, KEPT.format(">= 0")))["welldef", "ball"]
+    assert found.verdict is Verdict.OPEN
+    assert "the condition 'n > 0' in [domain] mends it" in found.reason
 
 
 def test_a_jump_of_a_power_is_not_proved():
