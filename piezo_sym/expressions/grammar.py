@@ -6,15 +6,14 @@ Numbers are taken from the source text as exact rationals.  Nothing is evaluated
 """
 
 import ast
-import json
 import re
 from collections.abc import Container
 from fractions import Fraction
 from functools import cache
 
-from piezo_sym.errors import listing, nearest, quote
+from piezo_sym.errors import nearest, quote
 from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
-from piezo_sym.expressions.incomplete import conditions_of, incomplete, with_a_point
+from piezo_sym.expressions.incomplete import incomplete, one_by_one, with_a_point
 from piezo_sym.expressions.tree import Add, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Pow, Sym, names
 
 LANGUAGE = "numbers, names, + - * / **, (), 'a if x < y else b', or a function as in exp(x)"
@@ -128,22 +127,15 @@ def read_law(text: str) -> Expr:
 def read_condition(text: str) -> Cmp:
     """Return the tree of one comparison."""
     try:
-        return _read_condition(text)
+        if isinstance(body := _parsed(text), ast.Compare):
+            return _comparison(body, text)
     except RefusedError:
-        apart = len(text) <= MAX_LENGTH and " if " not in text  # a choice has one of its own
-        several = conditions_of(text) if apart else [text]
-        if len(several) < 2:
+        if len(text) > MAX_LENGTH or not (remedy := one_by_one(text)):
             raise
-    remedy = f"write each condition as one of its own: {listing(map(json.dumps, several))}"
-    raise RefusedError("is not one comparison", remedy=remedy)
-
-
-def _read_condition(text: str) -> Cmp:
-    body = _parsed(text)
-    if not isinstance(body, ast.Compare):
-        remedy = "write 'max(a, b) > 0' for 'a > 0 or b > 0'" * isinstance(body, ast.BoolOp)
-        raise RefusedError("is not a comparison", "one of < <= > >=, as in 'T > T_0'", remedy)
-    return _comparison(body, text)
+        raise RefusedError("is not one comparison", remedy=remedy) from None
+    joined = "write 'max(a, b) > 0' for 'a > 0 or b > 0'" if isinstance(body, ast.BoolOp) else ""
+    remedy = one_by_one(text) or joined
+    raise RefusedError("is not a comparison", "one of < <= > >=, as in 'T > T_0'", remedy)
 
 
 @cache

@@ -1,9 +1,10 @@
 """Why a text is no law, where Python's parser says only that it is none, and what to write."""
 
+import json
 import re
 from keyword import kwlist
 
-from piezo_sym.errors import quote
+from piezo_sym.errors import listing, quote
 
 NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 #: The keywords of Python that a law may have, or that are no one's names.
@@ -62,6 +63,13 @@ def conditions_of(text: str) -> list[str]:
         else:
             found.append(bare)
     return [text] if OR.search(text) else found
+
+
+def one_by_one(text: str) -> str:
+    """Return what to do about several conditions in a text, or "": a choice has one of its own."""
+    several = [] if " if " in text else conditions_of(text)
+    listed = listing(map(json.dumps, several))
+    return f"write each condition as one of its own: {listed}" if len(several) > 1 else ""
 
 
 def with_a_point(text: str) -> str:

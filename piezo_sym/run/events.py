@@ -18,7 +18,7 @@ import numpy as np
 
 from piezo_sym.errors import PiezoError, UsageError, nearest, quote
 from piezo_sym.expressions.exact_eval import evaluate
-from piezo_sym.expressions.incomplete import AND, CONSTANTS, OR
+from piezo_sym.expressions.incomplete import CONSTANTS, OR, conditions_of
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Add, Call, Expr, Neg, names, rename
@@ -104,11 +104,9 @@ def _margin(text: str, where: str) -> Expr:
 
 def _margin_of_several(text: str, where: str) -> Expr:
     """Return what is positive where comparisons hold that are joined by 'and' or 'or'."""
-    for function, word in (("max", OR), ("min", AND)):
-        first, *more = word.split(text, maxsplit=1)
-        if more:
-            parts = (_margin_of_several(part, where) for part in (first, *more))
-            return Call(function, tuple(parts))
+    for function, parts in (("max", OR.split(text, maxsplit=1)), ("min", conditions_of(text))):
+        if len(parts) > 1:
+            return Call(function, tuple(_margin_of_several(part, where) for part in parts))
     return _margin(text, where)
 
 
@@ -125,11 +123,13 @@ def _parsed(
     try:
         return rename(read(plain, where), spelled)
     except PiezoError as error:
-        what, remedy = quote(text) + error.what.removeprefix(quote(plain)), error.remedy
+        said = [error.what, error.expected, error.remedy]
         with suppress(PiezoError):
-            margin = rename(_margin_of_several(plain, where), spelled)
-            remedy = f"write '{form.format(spell(margin))}'"
-        raise UsageError(what, where, error.expected, remedy) from error
+            said[2] = f"write '{form.format(spell(_margin_of_several(plain, where)))}'"
+        for name, own in spelled.items():
+            said = [part.replace(name, own) for part in said]
+        what, expected, remedy = said
+        raise UsageError(what, where, expected, remedy) from error
 
 
 def _check_names(tree: Expr, words: Sequence[str], where: str) -> Expr:

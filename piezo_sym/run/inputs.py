@@ -184,6 +184,7 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
         (r, default)
         for r, default in zip(module.INPUTS, module.INPUT_DEFAULTS, strict=True)
         if r.name not in (given if isinstance(given, Mapping) else ())
+        and r.name in before  # it may have states alone
         and np.any(before[r.name] != default)
     ]
     for record, default in left:

@@ -14,6 +14,7 @@ HINTS = tuple(
     for pattern, hint in (
         (r"= *([+-]?\d+)!?,!?(\d+)", r"write \1.\2, with a point"),
         (r"!(%|//)", "a comment begins with #"),
+        (r"!(True|False)\b", "write true or false"),
         (r"!['\"]?.*[\u201c\u201d\u201e\u2018\u2019]", 'write straight quotes, as in unit = "N/m"'),
         (r"[\w.-]*![^\x00-\x7f]", "write a name in Latin letters, as alpha"),
         (r"!([+-]?)\.(\d+)", r"write \g<1>0.\2, with a digit before the point"),

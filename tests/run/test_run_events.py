@@ -77,6 +77,7 @@ def test_an_input_that_jumps_is_an_event():
         ({"stop": "spring.force > 1"}, "'spring' has effort, flow, power, energy"),
         ({"stop": "sprin.effort > 1"}, "did you mean 'spring.effort'?"),
         ({"stop": "spring.effort > 1 +"}, "simulate.stop: 'spring.effort > 1 +' "),
+        ({"stop": "spring.effort(2) > 1"}, "'spring.effort'"),
         ({"events": {"hit": "q.real"}}, "simulate.events.hit"),
         ({"events": {"hit": "__import__('os')"}}, "simulate.events.hit"),
         ({"events": {"q": "p"}}, "'q' cannot name an event"),
@@ -132,6 +133,7 @@ def test_a_run_goes_on_where_another_ended(options, tmp_path):
         ("(q > 0.5) and (0 >= p)", "min(q - 0.5, 0 - p)"),
         ("q > 0.5 && p > 0 || T_body < 3", "max(min(q - 0.5, p), 3 - T_body)"),
         ("spring.effort > 1 | p > 1 | q > 1", "max(spring.effort - 1, max(p - 1, q - 1))"),
+        ("1 < spring.effort < 2", "min(spring.effort - 1, 2 - spring.effort)"),
     ],
 )
 def test_several_conditions_are_told_the_law_to_write(text, meant):

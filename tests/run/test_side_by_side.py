@@ -15,6 +15,7 @@ from piezo_sym.run.engine.library import Sources, library, read_source
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.parameters import read_initial, read_parameters
 from piezo_sym.run.system import DrivenModule
+from piezo_sym.spec.load import parse
 from tests.conftest import write_script
 
 SPECS = sorted((Path(__file__).parents[1] / "networks" / "specs").glob("*.toml"))
@@ -91,6 +92,40 @@ def test_a_member_that_stops_leaves_the_others_alone():
     assert [error is not None for error in runs.errors] == [k == 4 for k in range(9)]
     others = [k for k in range(9) if k != 4]
     assert np.array_equal(alone.states[others], runs.states[others])
+
+
+QUADRATIC = """
+[model]
+name = "quadratic"
+title = "A mass on a spring, with a drag that has a kink"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+k = { value = 100.0, unit = "N/m" }
+d = { value = 2.0, unit = "N*s**2/m**2" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 10.0, unit = "J/K" }
+[inputs]
+F = { unit = "N" }
+[domain]
+assume = ["d >= 0"]
+[elements]
+mass   = { kind = "mass", at = "tip", mass = "m", state = "p" }
+spring = { kind = "spring", between = ["tip", "wall"], stiffness = "k", state = "q" }
+drag   = { kind = "damper", between = ["tip", "wall"], force = "d*v*abs(v)", heats = "body" }
+body   = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+load   = { kind = "force_source", at = "tip", input = "F" }
+"""
+
+
+def test_members_that_fail_leave_nothing_to_the_next_in_their_lanes():
+    """More members than lanes: what a lane tries when its run sticks is not for the next run."""
+    members = Members(parse(QUADRATIC), 20, 3.0, {"F": sine(40.0, 1.2)})
+    whole = members.run(rtol=1e-5)
+    members.x[:8] = np.nan
+    runs = members.run(rtol=1e-5)
+    assert [error is not None for error in runs.errors] == [k < 8 for k in range(20)]
+    assert np.array_equal(whole.states[8:], runs.states[8:])
+    assert np.array_equal(whole.work[8:], runs.work[8:])
 
 
 @pytest.mark.parametrize("how", [{"rtol": 1e-4}, {"length": 1e-4}], ids=["rtol", "step"])

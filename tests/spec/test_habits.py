@@ -29,6 +29,12 @@ HABITS = [
     (ASSUME, BOTH, 'assume = ["0 <= d < 9e9"]', 'its own: "0 <= d", "d < 9e9"'),
     (ASSUME, BOTH, 'assume = ["min(d, rho) >= 0, d < 9e9"]', 'own: "min(d, rho) >= 0", "d < 9e9"'),
     (ASSUME, ASSUME, 'assume = ["d >= 0 or rho >= 0"]', "write 'max(a, b) > 0' for"),
+    (
+        FORCE,
+        f"{FORCE}\ndiscontinuous = true",
+        f"{FORCE}\ndiscontinuous = True",
+        "write true or false",
+    ),
     (MASS, MASS, f"% mass\n{MASS}", "a comment begins with #"),
     (MASS, MASS, f"{MASS} % mass", "a comment begins with #"),
     (MASS, 'M = { value = 3, unit = "kg" }', "M = { value = 3, unit = kg }", 'quotes: "kg"'),
@@ -81,3 +87,7 @@ def test_the_list_of_kinds_shows_a_bank_of_cells(tmp_path, monkeypatch, capsys):
     cells = capsys.readouterr().out.partition("[banks.creep]")
     text = (tmp_path / "made.toml").read_text(encoding="utf-8")
     assert parse(text + "".join(cells[1:])).banks["creep"].count == 3
+
+
+def test_a_choice_in_a_condition_has_a_comparison_of_its_own():
+    parse(TEXT.replace(ASSUME, 'assume = ["(d if rho > 0 else 1) >= 0"]'))

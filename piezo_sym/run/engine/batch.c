@@ -105,7 +105,8 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
     b->m.loose = b->m.early = nowhere;
     b->m.allowed = RESIDUAL * task->tolerance / NOISE;
 #endif /* COSTATES */
-    b->m.over = task->over_kinks ? none_of(nowhere) : nowhere;
+    b->over_kinks = task->over_kinks && !b->either;
+    b->m.over = nowhere;
 }
 
 /* Let a lane take a run: its parameters, its state, and its ledger. */
@@ -137,8 +138,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     for (long k = 0; k < m->branches; ++k)
         LANE(b->after, k, lane) = LANE(b->tried, k, lane) = LANE(b->tried_error, k, lane) = 0.0;
     b->lane[lane].since = run->t;
-    if (b->either)
-        SET(b->m.over, lane, 0);
+    SET(b->m.over, lane, b->over_kinks);
     MODEL(sample_here)(b, lane);
 }
 

@@ -86,7 +86,7 @@ static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
     return found;
 }
 
-/* How far behind a step a switch is looked for, in its lengths. */
+/* How many lengths of a step after its end a switch is looked for. */
 enum { AHEAD = 3 };
 
 /*

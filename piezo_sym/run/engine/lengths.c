@@ -1,6 +1,6 @@
 /*
  * The lengths of steps with a tolerance: by their errors, up to switches that are seen before, after switches,
- * and below lengths that could not be solved. Comes after crossings.c.
+ * and below lengths that could not be solved. Comes after samples.c.
  */
 
 /* The step length is proportional to about this power of the error where steps contain kinks. */
@@ -45,7 +45,7 @@ static double MODEL(growth)(const MODEL(lane) *l, double error, int over)
     if (over || !(error < SMALL && l->error > 0.0 && change > LONGER))
         return usual;
     const double power = fmax(log(error / l->error) / log(change), LEAST_POWER);
-    return fmax(usual, fmin(PART_OF(over) * pow(error / SMALL, -1.0 / power), MOST_LONGER));
+    return fmax(usual, fmin(PART_OF(0) * pow(error / SMALL, -1.0 / power), MOST_LONGER));
 }
 
 /* Note how long a step may be that begins at the switch at which this one began. */
@@ -80,9 +80,9 @@ static void MODEL(next_length)(MODEL(batch) *b, MODEL(lane) *l, int lane, double
         l->error = l->latest;
         if (!last) {
             l->h = fmin(l->step * fmin(l->longer, most), SUDDEN * l->steady);
-            l->h = fmax(l->h, fmin(allowed, missed));
             l->steady = fmax(allowed, missed);
         }
+        l->h = fmax(l->h, fmin(allowed, missed));
     }
     l->turned = l->which;
     l->h = fmin(l->h, BELOW_HARD * l->hard);

@@ -1,6 +1,6 @@
 /*
  * The outcome of a lane's step: it is refused, accepted, cut at a switch, or booked; and the lane's next
- * step.  Comes after samples.c.
+ * step.  Comes after lengths.c.
  */
 
 /* End a run, `failed` if no step succeeds. */
@@ -35,6 +35,7 @@ static void MODEL(stuck)(MODEL(batch) *b, int lane)
     l->stuck = 1;
     l->solves = 0;
     l->refused = l->idle = 0;
+    l->aimed = 0.0;
     l->known = 0.0;
     l->h = b->first;
     l->which = -1;
@@ -47,6 +48,7 @@ static void MODEL(refuse)(MODEL(batch) *b, int lane, double h)
     MODEL(lane) *l = b->lane + lane;
     ++l->run->rejected;
     l->h = h;
+    l->aimed = 0.0;
     l->settled = 0;
     l->phase = STEP;
     if (LOSSY || ++l->refused > MOST_REFUSED || l->t + h <= l->t || h < SHORTEST_PART * b->fixed)

@@ -9,6 +9,9 @@
  * number of either sign; the heat and entropy of every process are scaled by one factor that makes
  * up for it. So both balances are exact.
  *
+ * Inner states of path functionals have no residuals: their rates are set, and what they store and
+ * release as heat along the path is in both sums.
+ *
  * The factor has to be within MOST_SCALED of 1, and the energy so small that the mean temperature is
  * that of half of it. Else the step is solved to round-off.
  */

@@ -58,10 +58,10 @@ typedef struct {
     double known, longer;
     double kept;   /* time of the last sample, or -HUGE_VAL */
     int written;   /* whether the current sample is written, though its step is repeated */
-    double steady; /* the length that the error of the step before allows */
+    double steady; /* the length that was allowed to the step before, but for switches */
     double latest;          /* the error of this step */
-    double compared, error; /* of another, the last or the last one after the same switch; 0: none */
-    double hard;   /* about how long a step cannot be solved, as one before could not; or HUGE_VAL */
+    double compared, error; /* length and error (0: none) of the last step, or of the last after this switch */
+    double hard;   /* a length at which steps are not solved: that of the last such step, and growing */
     double aimed;  /* the length of a step but for a switch, just behind which it is to end; or 0 */
     double ahead;  /* time from the end of the step to the next switch, or HUGE_VAL */
     int phase, behind, predicted, last, cuts, refused, halved;
@@ -91,7 +91,8 @@ typedef struct {
     MODEL(lane) lane[REAL_WIDTH];
     MODEL(run) *runs;
     const double *times; /* of samples */
-    long count, next, samples, either; /* `either`: steps end at kinks, or go over them */
+    long count, next, samples;
+    int over_kinks, either; /* whether steps go over kinks, or, in turn, end at them or go over */
     double stop, tolerance, first, longest, fixed;
     double beyond; /* part of a step that may lie beyond the switch at its end, where no stage lies */
     real *rate, *side, *sums, *lost, *known;       /* at the beginning of a step; of the step before */
