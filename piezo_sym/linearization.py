@@ -90,7 +90,6 @@ def linearize(
     at: OperatingPoint | Mapping[str, LaneValue] | None = None,
     inputs: Mapping[str, float] | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
-    **others: object,
 ) -> LinearModel:
     """Return the linear model at a point; at the kink of a law, that of one side.
 
@@ -114,7 +113,6 @@ def linearize(
     UsageError : a name is unknown, or a value is no number.
     RunError : the rates have no derivative there, or `operating_point` finds none.
     """
-    known_keys(others, ("at", "inputs", "parameters"), WHERE, {"initial": "at"})
     model = model if isinstance(model, Model) else load(model)
     module: Any = module_of(model)
     if at is None:

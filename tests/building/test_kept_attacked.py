@@ -16,29 +16,10 @@ from piezo_sym.cli import run
 from piezo_sym.report import Report
 from piezo_sym.verification import process
 from piezo_sym.verification.protocol import Progress
+from tests.building.test_started import STRETCHED
 
 pytestmark = pytest.mark.usefixtures("cache")
 ROOT = Path(__file__).parents[2]
-STRETCHED = """
-[model]
-name = "stretched"
-[parameters]
-m   = { value = 1.0, unit = "kg" }
-k   = { value = 1.0, unit = "N/m" }
-q_0 = { value = 1.0, unit = "m" }
-d   = { value = 1.0, unit = "N*s/m" }
-T_0 = { value = 300.0, unit = "K" }
-c   = { value = 2.0, unit = "J/K" }
-[domain]
-assume = ["d >= 0", "q_0 > 0"]
-[elements]
-spring = { kind = "spring", between = ["tip", "wall"], stiffness = "k*cosh(q/q_0)", state = "q" }
-mass   = { kind = "mass", at = "tip", mass = "m", state = "p" }
-damper = { kind = "damper", between = ["tip", "wall"], force = "d*v", heats = "body" }
-body   = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
-"""
-
-
 #: Of joined springs, one of which is drawn where its state is 0, where nothing is said.
 DRAWN = (
     STRETCHED.replace('["d >= 0"', '["d >= 0", "k > 0"')

@@ -7,7 +7,6 @@ import pytest
 
 from piezo_sym import (
     Stepper,
-    linearize,
     load,
     periodic_steady_state,
     simulate,
@@ -80,11 +79,6 @@ def test_a_stepper_goes_on_where_a_run_ended(before):
 def test_where_a_run_is_no_state_the_state_to_give_is_said(call, before):
     with pytest.raises(UsageError, match=r"a Dataset is no state; .* give \{name: run\[name\]"):
         call(before)
-
-
-def test_linearize_names_the_argument_for_a_state():
-    with pytest.raises(UsageError, match="linearize: unknown name 'initial'; give it in 'at'"):
-        linearize("piezo_stack", initial={"q": 0.0})
 
 
 def test_a_temperature_is_measured_as_an_output():

@@ -29,6 +29,8 @@ WRONG = {
     "who takes losses": ("stack_maxwell_heated = 4,", "stack_maxwell_heated = 3,"),
     "jumps": ("stack_maxwell_jumps = 0", "stack_maxwell_jumps = 1"),
     "what is read": ("stack_maxwell_reads = 1,", "stack_maxwell_reads = 0,"),
+    "a co-state of an inner state": ("] = F_slips[j];", "] = -F_slips[j];"),
+    "which states are entropies": ("_body[] = {\n    4,", "_body[] = {\n    3,"),
     "how many are given": ("; /* means */", " + 1; /* means */"),
 }
 

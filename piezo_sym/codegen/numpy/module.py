@@ -171,7 +171,8 @@ class _Printer:
             if field.bank:
                 ones = f"*np.ones({field.bank}_count)" if field.name in listed else ""
                 value = f"_lanes({value}, {field.bank}_count, {dimensions}){ones}"
-            value = f"np.float64({value})" if field.name in floats else value
+            elif field.name in floats:
+                value = f"np.float64({value})"
             yield f"{field.name} = {value}"
         for n, slot in enumerate(self.states.slots):
             if slot.label in used:
