@@ -45,8 +45,6 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(rate, m->n);
     PLACE(side, m->branches);
     PLACE(after, m->branches);
-    PLACE(tried, m->branches);
-    PLACE(tried_error, m->branches);
     PLACE(sums, m->booked);
     PLACE(lost, m->booked);
     PLACE(known, STAGES * m->n);
@@ -136,7 +134,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     b->lane[lane].kept = -HUGE_VAL;
     b->lane[lane].which = b->lane[lane].turned = -1;
     for (long k = 0; k < m->branches; ++k)
-        LANE(b->after, k, lane) = LANE(b->tried, k, lane) = LANE(b->tried_error, k, lane) = 0.0;
+        LANE(b->after, k, lane) = 0.0;
     b->lane[lane].since = run->t;
     SET(b->m.over, lane, b->over_kinks);
     MODEL(sample_here)(b, lane);

@@ -159,8 +159,7 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
         l->behind = 0;
         if (l->phase == STEP && b->fixed == 0.0) {
             const double error = LANE(&worst, 0, lane);
-            l->longer = MODEL(growth)(l, error, IN(b->m.over, lane) != 0);
-            l->latest = error;
+            l->longer = MODEL(growth)(error, IN(b->m.over, lane) != 0);
             if (!(error <= 1.0)) {
                 double part = fmax(0.1, l->refused > 1 ? fmin(l->longer, 0.5) : l->longer);
 #if defined(PATHS) /* most of the error may come from it */

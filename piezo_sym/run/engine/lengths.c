@@ -9,15 +9,6 @@
 #define PART_OF(over) ((over) ? 0.9 : 0.82)
 /* An error may be small by chance: a step is at most this much longer than the last one allowed. */
 #define SUDDEN 1.5
-/*
- * Where the error is below SMALL, the power of the length that errors are proportional to is taken from two
- * steps, of which one was longer by LONGER, if it is above LEAST_POWER: by it, a step is at most MOST_LONGER
- * times longer.
- */
-#define SMALL 0.1
-#define LONGER 1.05
-#define LEAST_POWER 3.0
-#define MOST_LONGER 3.0
 /* Steps are this much shorter than one that could not be solved, and less so with each of them. */
 #define BELOW_HARD 0.6
 #define LESS_HARD 2.0
@@ -32,20 +23,12 @@ enum { MOST_AIMS = 2 };
 /* The length after a switch grows by no more than this factor from one time to the next. */
 #define MORE_AFTER 1.5
 
-/*
- * How much longer the next step may be. The error of a step is proportional to a known power of its length;
- * but one that earlier steps left in a stiff state depends on no length, as the error of another step shows.
- */
-static double MODEL(growth)(const MODEL(lane) *l, double error, int over)
+/* How much longer the next step may be, by the error of this one. */
+static double MODEL(growth)(double error, int over)
 {
     if (!(error > 0.0))
         return error == 0.0 ? 8.0 : 0.25;
-    const double usual = PART_OF(over) * pow(error, over ? OVER_KINKS : -0.5 / STAGES);
-    const double change = l->length / l->compared;
-    if (over || !(error < SMALL && l->error > 0.0 && change > LONGER))
-        return usual;
-    const double power = fmax(log(error / l->error) / log(change), LEAST_POWER);
-    return fmax(usual, fmin(PART_OF(0) * pow(error / SMALL, -1.0 / power), MOST_LONGER));
+    return PART_OF(over) * pow(error, over ? OVER_KINKS : -0.5 / STAGES);
 }
 
 /* Note how long a step may be that begins at the switch at which this one began. */
@@ -54,8 +37,6 @@ static void MODEL(keep_after)(MODEL(batch) *b, const MODEL(lane) *l, int lane, d
     double *const after = &LANE(b->after, l->turned, lane);
     const double allowed = l->whole * fmin(l->longer, most);
     *after = *after > 0.0 ? fmin(allowed, MORE_AFTER * *after) : allowed;
-    LANE(b->tried, l->turned, lane) = l->whole;
-    LANE(b->tried_error, l->turned, lane) = l->latest;
 }
 
 /*
@@ -70,14 +51,10 @@ static void MODEL(next_length)(MODEL(batch) *b, MODEL(lane) *l, int lane, double
         MODEL(keep_after)(b, l, lane, most);
     if (switches) {
         const double after = LANE(b->after, l->which, lane), whole = fmax(l->whole, l->aimed);
-        l->compared = LANE(b->tried, l->which, lane);
-        l->error = LANE(b->tried_error, l->which, lane);
         l->h = after > 0.0 ? after : fmin(l->longer, AFTER_SWITCH) * whole;
         l->steady = HUGE_VAL;
     } else {
         const double allowed = l->step * l->longer;
-        l->compared = l->step;
-        l->error = l->latest;
         if (!last) {
             l->h = fmin(l->step * fmin(l->longer, most), SUDDEN * l->steady);
             l->steady = fmax(allowed, missed);

@@ -59,8 +59,6 @@ typedef struct {
     double kept;   /* time of the last sample, or -HUGE_VAL */
     int written;   /* whether the current sample is written, though its step is repeated */
     double steady; /* the length that was allowed to the step before, but for switches */
-    double latest;          /* the error of this step */
-    double compared, error; /* length and error (0: none) of the last step, or of the last after this switch */
     double hard;   /* a length at which steps are not solved: that of the last such step, and growing */
     double aimed;  /* the length of a step but for a switch, just behind which it is to end; or 0 */
     double ahead;  /* time from the end of the step to the next switch, or HUGE_VAL */
@@ -96,8 +94,7 @@ typedef struct {
     double stop, tolerance, first, longest, fixed;
     double beyond; /* part of a step that may lie beyond the switch at its end, where no stage lies */
     real *rate, *side, *sums, *lost, *known;       /* at the beginning of a step; of the step before */
-    /* branches: the length for a step after each switch, or 0; what the last had, and its error */
-    real *after, *tried, *tried_error;
+    real *after; /* branches: the length for a step after each switch; 0: not known */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
