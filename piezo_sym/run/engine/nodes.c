@@ -132,9 +132,12 @@ static void MODEL(find_noise)(const MODEL(block) *m, real *noise)
 /* The lanes in which FINE nodes are too few: the step is too long. */
 static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
 {
+    const mask bad = m->fine & MODEL(rough_parts)(m, h, &MODEL(many), NULL);
+    if (!any(bad))
+        return bad;
     real *const noise = m->gap; /* no longer needed by Newton's method */
     MODEL(find_noise)(m, noise);
-    return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
+    return bad & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
 
 #if !defined(COSTATES) /* else see residual.c */
