@@ -119,7 +119,8 @@ class Sine(_Wave):
     _smooth = True
 
     def _values(self, t: FloatArray | float) -> FloatArray:
-        angle = 2 * pi * self.frequency * t + self.phase
+        turns = self.frequency * np.asarray(t)  # whole turns are left out, as in C
+        angle = 2 * pi * (turns - np.rint(turns)) + self.phase
         return np.asarray(self.amplitude * np.sin(angle) + self.offset)
 
     @property
@@ -283,7 +284,7 @@ class Chirp(Signal):
         sweep = np.minimum(t, self.duration)
         rate = (self.f_stop - self.f_start) / self.duration
         turns = (self.f_start + rate * sweep / 2) * sweep + self.f_stop * (t - sweep)
-        return np.asarray(self.amplitude * np.sin(2 * pi * turns) + self.offset)
+        return np.asarray(self.amplitude * np.sin(2 * pi * (turns - np.rint(turns))) + self.offset)
 
     def _corners(self, duration: float) -> Iterable[float]:  # noqa: ARG002
         return (self.duration,)

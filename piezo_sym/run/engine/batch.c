@@ -62,6 +62,8 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(some_rows, m->booked);
     PLACE(some_margin, MODEL(limits));
     PLACE(some_inputs, m->inputs);
+    const long waves = m->inputs * (long)(sizeof(MODEL(wave)) / sizeof(real));
+    b->waves = memory ? (MODEL(wave) *)(memory + at) : NULL, at += waves;
 #undef PLACE
     return (size_t)at * sizeof(real);
 }
@@ -129,6 +131,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
         LANE(m->branch, k, lane) = 0.0;
     LANE(&m->iterations, 0, lane) = (double)run->iterations;
     b->lane[lane] = (MODEL(lane)){.run = run, .segment = run->segments, .t = run->t, .phase = BEGIN};
+    MODEL(enter)(b->waves, run->segments, m->inputs, lane);
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
     b->lane[lane].steady = b->lane[lane].ahead = b->lane[lane].hard = HUGE_VAL;
     b->lane[lane].kept = -HUGE_VAL;
@@ -194,9 +197,9 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
             if (!IN(going, lane))
                 continue;
             l->h = fmin(l->h, MODEL(until)(b, l) - l->t);
-            MODEL(inputs_at)(l->segment, m->inputs, l->t + 0.5 * l->h, b->some_inputs, lane);
             LANE(&h, 0, lane) = l->h;
         }
+        MODEL(inputs_at)(b, going, MODEL(now)(b) + 0.5 * h, b->some_inputs);
         const mask good = MODEL(midpoint)(b, h, going);
         for (long k = 0; k < m->n; ++k) {
             m->x[k] = chosen(good, 2.0 * m->reached[k] - m->x[k], m->x[k]);
@@ -216,7 +219,7 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
             l->h = fmin(2.0 * l->h, longest);
             SET(going, lane, l->t < b->stop);
             if (l->t >= stop && l->t < b->stop)
-                ++l->segment;
+                MODEL(enter)(b->waves, ++l->segment, m->inputs, lane);
         }
     }
     for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {

@@ -160,9 +160,8 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
             part[lane] = c.guessed ? c.high
                                    : c.low + (c.high - c.low) * (c.at_low / (c.at_low - c.at_high));
             LANE(&at, 0, lane) = part[lane];
-            const MODEL(lane) *l = b->lane + lane;
-            MODEL(inputs_at)(l->segment, m->inputs, l->t + part[lane] * l->length, b->some_inputs, lane);
         }
+        MODEL(inputs_at)(b, where, MODEL(now)(b) + at * h, b->some_inputs);
         MODEL(reach_part)(m, h, b->known, at);
         MODEL(point)(b, m->reached, m->branch, NULL, b->some_rate, b->some_side);
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {

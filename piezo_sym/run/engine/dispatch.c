@@ -5,7 +5,7 @@
 
 /* The current step of all lanes: lengths, which lanes they concern, and their outcomes. */
 typedef struct {
-    real h, behind, slope;
+    real begin, h, behind, slope;
     mask busy, sampling, steps, known; /* lanes with a step; for a sample; another; with a prediction */
     mask planned;                      /* steps whose length their errors decide */
     mask turned;                       /* whose known rates are those before a switch */
@@ -20,14 +20,14 @@ typedef struct {
 
 static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
 {
-    MODEL(dispatch) t = {.h = zero, .behind = zero, .slope = zero};
+    MODEL(dispatch) t = {.begin = zero, .h = zero, .behind = zero, .slope = zero};
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         MODEL(lane) *l = b->lane + lane;
         t.crossing[lane].which = -1;
         t.part[lane] = 1.0;
         if (l->phase == IDLE)
             continue;
-        MODEL(plan)(b, l, lane);
+        MODEL(plan)(b, l);
         SET(t.busy, lane, 1);
         SET(t.sampling, lane, l->phase == SAMPLE || l->phase == RESUME);
         SET(t.resumed, lane, l->phase == RESUME);
@@ -40,6 +40,7 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
         SET(t.loose, lane, b->fixed == 0.0 && !b->tape && !l->to_round_off); /* a tape has exact roots */
         l->solves += !IN(t.sampling, lane);
         LANE(&t.h, 0, lane) = l->length;
+        LANE(&t.begin, 0, lane) = MODEL(begin)(l);
         const double ahead = MODEL(begin)(l) - l->t; /* of the run */
         LANE(&t.behind, 0, lane) = l->behind + (l->known > 0.0 ? ahead / l->known : 0.0);
         l->predicted = l->known > 0.0;
@@ -48,6 +49,8 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
 #if defined(COSTATES)
     b->m.loose = t.loose;
 #endif /* COSTATES */
+    for (long i = 0; i < STAGES; ++i)
+        MODEL(inputs_at)(b, t.busy, t.begin + stage_at[i] * t.h, b->m.u + i * b->m.inputs);
     t.steps = t.busy & none_of(t.sampling);
     b->m.sketch &= t.steps & none_of(b->m.over);
     return t;
@@ -98,9 +101,7 @@ static void MODEL(sampled)(MODEL(batch) *b, MODEL(dispatch) *t)
 /* The rates where steps with a tolerance began, as their stages tell. */
 static void MODEL(as_begun)(MODEL(batch) *b, const MODEL(dispatch) *t)
 {
-    for (int lane = 0; lane < REAL_WIDTH; ++lane)
-        if (IN(t->steps, lane))
-            MODEL(inputs_at)(b->lane[lane].segment, b->m.inputs, b->lane[lane].t, b->some_inputs, lane);
+    MODEL(inputs_at)(b, t->steps, t->begin, b->some_inputs);
     MODEL(point)(b, b->m.x, b->m.branch, stage_start, b->some_rate, b->some_side);
     MODEL(copy)(t->steps & t->found, b->some_rate, b->rate, b->m.n);
 }
@@ -117,11 +118,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
     if (b->fixed == 0.0)
         MODEL(as_begun)(b, t);
 #endif
-    for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-        const MODEL(lane) *l = b->lane + lane;
-        if (IN(t->steps, lane))
-            MODEL(inputs_at)(l->segment, m->inputs, l->t + l->length, b->some_inputs, lane);
-    }
+    MODEL(inputs_at)(b, t->steps, t->begin + t->h, b->some_inputs);
     memcpy(b->end_branch, m->branch + (STAGES - 1) * m->branches, (size_t)m->branches * sizeof(real));
     for (int again = 0; again < 3; ++again) {
         MODEL(point)(b, m->end, b->end_branch, stage_end, b->some_rate, b->some_side);

@@ -139,7 +139,7 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
     else if (l->idle > MOST_REFUSED)
         MODEL(stuck)(b, lane);
     else if (l->t >= l->segment->stop) {
-        ++l->segment;
+        MODEL(enter)(b->waves, ++l->segment, b->m.inputs, lane);
         l->phase = BEGIN;
     }
     return l->which >= 0 && l->phase == STEP;

@@ -145,6 +145,49 @@ static inline real tanh_of(real z)
     return chosen(z < 0.0, -found, chosen(z == 0.0, z, found));
 }
 
+/*
+ * Sine and cosine of y + q pi/2 with the nearest integer q, by Taylor series of y, |y| <= pi/4. Halves of pi
+ * are taken off in three parts, of which the first two have few enough bits that q times them is exact.
+ */
+static inline real turned_sin(real a, uint64_t quarters)
+{
+    const real shifted = a * 0x1.45f306dc9c883p-1 + 0x1.8p52, q = shifted - 0x1.8p52;
+    const real y = ((a - q * 0x1.921fb54400000p+0) - q * 0x1.0b4611a600000p-34) - q * 0x1.3198a2e037073p-69;
+    const real y2 = y * y, y4 = y2 * y2, y8 = y4 * y4;
+    const real from_3 = (-1.0 / 6.0 + y2 * (1.0 / 120.0)) + y4 * (-1.0 / 5040.0 + y2 * (1.0 / 362880.0));
+    const real from_11 = (-1.0 / 39916800.0 + y2 * (1.0 / 6227020800.0))
+        + y4 * (-1.0 / 1307674368000.0 + y2 * (1.0 / 355687428096000.0));
+    const real from_4 = (1.0 / 24.0 + y2 * (-1.0 / 720.0)) + y4 * (1.0 / 40320.0 + y2 * (-1.0 / 3628800.0));
+    const real from_12 = (1.0 / 479001600.0 + y2 * (-1.0 / 87178291200.0)) + y4 * (1.0 / 20922789888000.0);
+    const real sine = y + y * y2 * (from_3 + y8 * from_11);
+    const real cosine = 1.0 - (0.5 * y2 - y4 * (from_4 + y8 * from_12));
+    const pattern q_bits = bits_of(shifted) + quarters;
+    const mask odd = (q_bits & 1) == 1, negative = (q_bits & 2) == 2;
+    const real size = chosen(odd, cosine, sine);
+    return chosen(negative, -size, size);
+}
+
+/* Beyond this, the parts of pi have too few bits. */
+#define MOST_TURNED 1e6
+
+static inline real sin_of(real a)
+{
+    real found = turned_sin(a, 0);
+    for (int lane = 0; lane < REAL_WIDTH && any(size_of(a) > MOST_TURNED); ++lane)
+        if (fabs(LANE(&a, 0, lane)) > MOST_TURNED)
+            LANE(&found, 0, lane) = sin(LANE(&a, 0, lane));
+    return found;
+}
+
+static inline real cos_of(real a)
+{
+    real found = turned_sin(a, 1);
+    for (int lane = 0; lane < REAL_WIDTH && any(size_of(a) > MOST_TURNED); ++lane)
+        if (fabs(LANE(&a, 0, lane)) > MOST_TURNED)
+            LANE(&found, 0, lane) = cos(LANE(&a, 0, lane));
+    return found;
+}
+
 /* The other functions, lane after lane: c_sources.py adds a line per function, from its record. */
 #define FUNCTION(function, slope)                                                                  \
     static inline real function##_of(real a)                                                       \

@@ -19,7 +19,7 @@ from piezo_sym.run.engine.c_sources import c_source
 from piezo_sym.run.module import GeneratedModule, lanes
 
 POINTER, LONG, INT, DOUBLE = ctypes.c_void_p, ctypes.c_long, ctypes.c_int, ctypes.c_double
-_DECLARED = ("trajectory.c", "batch.c", "step_once.c", "derivatives.c")
+_DECLARED = ("inputs.c", "trajectory.c", "batch.c", "step_once.c", "derivatives.c")
 _NUMBERS = {"double": DOUBLE, "long": LONG}
 
 #: The number of parameters whose structures are cached: calls of single runs use the same ones.

@@ -6,16 +6,16 @@
 #if REAL_WIDTH == 1
 
 /* Solve the step that begins at m.x, on the branches of the block; returns whether it has rates. */
-static int MODEL(solve_again)(MODEL(batch) *b, const MODEL(segment) *segment, double t, double h)
+static int MODEL(solve_again)(MODEL(batch) *b, double t, double h)
 {
     MODEL(block) *m = &b->m;
     const MODEL(block) before = *m;
     m->most = MOST_OF_FIXED, m->late = LATE, m->stays = 0.7, m->over = m->sketch = nowhere;
     m->largest = b->tape->scale;
-    MODEL(inputs_at)(segment, m->inputs, t, b->some_inputs, 0);
+    MODEL(inputs_at)(b, 1, t, b->some_inputs);
     MODEL(point)(b, m->x, m->branch, NULL, b->some_rate, b->some_side);
     for (long i = 0; i < STAGES; ++i) {
-        MODEL(inputs_at)(segment, m->inputs, t + stage_at[i] * h, m->u + i * m->inputs, 0);
+        MODEL(inputs_at)(b, 1, t + stage_at[i] * h, m->u + i * m->inputs);
         memcpy(m->rates + i * m->n, b->some_rate, (size_t)m->n * sizeof(real));
     }
     const int found = MODEL(solve)(m, h, 1) && MODEL(accepted)(m);
@@ -32,7 +32,7 @@ static int MODEL(keep_on_tape)(MODEL(batch) *b)
     const MODEL(lane) *l = b->lane;
     MODEL(tape) *to = b->tape;
     const size_t n = (size_t)m->n, branches = STAGES * (size_t)m->branches;
-    if (!MODEL(solve_again)(b, l->segment, l->t, l->step))
+    if (!MODEL(solve_again)(b, l->t, l->step))
         return 0;
     memcpy(to->x + to->count * m->n, m->x, n * sizeof(real));
     memcpy(to->branch + to->count * STAGES * m->branches, m->branch, branches * sizeof(real));
@@ -61,12 +61,14 @@ int MODEL(replay)(MODEL(batch) *b, double t, double h, const double *x, const do
     const MODEL(segment) *segment = b->tape->segments;
     while (t >= segment->stop)
         ++segment;
+    b->lane->segment = segment;
+    MODEL(enter)(b->waves, segment, m->inputs, 0);
     memcpy(m->x, x, n * sizeof(real));
     memcpy(m->branch, branch, STAGES * (size_t)m->branches * sizeof(real));
-    const int found = MODEL(solve_again)(b, segment, t, h);
+    const int found = MODEL(solve_again)(b, t, h);
     memcpy(rates, m->rates, STAGES * n * sizeof(real));
     memcpy(u, m->u, STAGES * inputs * sizeof(real));
-    MODEL(inputs_at)(segment, m->inputs, t + h, u + STAGES * inputs, 0);
+    MODEL(inputs_at)(b, 1, t + h, u + STAGES * inputs);
     memcpy(end, m->end, n * sizeof(real));
     return found;
 }

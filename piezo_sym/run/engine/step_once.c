@@ -63,6 +63,7 @@ static int MODEL(steps_on)(MODEL(stepper) *t)
     MODEL(lane) *l = b->lane;
     for (long k = 0; k < b->m.inputs; ++k)
         t->signals[k].offset = t->u[k];
+    MODEL(enter)(b->waves, l->segment, b->m.inputs, 0);
     for (long step = 0; step < t->steps; ++step) {
         if (l->phase == IDLE) { /* the last step succeeded: its rates predict this one */
             l->phase = STEP;

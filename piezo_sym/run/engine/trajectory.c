@@ -10,23 +10,6 @@
  * All lanes solve one step at a time together (dispatch.c), each for a purpose of its own.
  */
 
-/*
- * An input between its breaks: a sine whose frequency may change linearly; Chebyshev series of `terms`
- * terms on the pieces between `edges`; or a function to call.
- */
-typedef struct {
-    double amplitude, frequency, rate, phase, offset;
-    const double *edges, *coefficients;
-    long pieces, terms;
-    double (*called)(double);
-} MODEL(signal);
-
-/* The inputs of a run until the time `stop`. */
-typedef struct {
-    double stop;
-    const MODEL(signal) *signals;
-} MODEL(segment);
-
 /* A run: what it is given, its current state, and its results at samples. */
 typedef struct {
     const MODEL(parameters) *p;
@@ -88,6 +71,7 @@ typedef struct {
     MODEL(tape) *tape; /* of one run, or NULL */
     MODEL(lane) lane[REAL_WIDTH];
     MODEL(run) *runs;
+    MODEL(wave) *waves;  /* of each input */
     const double *times; /* of samples */
     long count, next, samples;
     int over_kinks, either; /* whether steps go over kinks, or, in turn, end at them or go over */
@@ -130,42 +114,27 @@ enum { TRIED = 32, AGAIN = 12 };
  */
 #define BEYOND 0.01
 
-/* The value of a signal given by Chebyshev series, by Clenshaw's recurrence. */
-static double MODEL(piece_at)(const MODEL(signal) *s, double t)
+/* The inputs of some lanes at the times t. */
+static void MODEL(inputs_at)(const MODEL(batch) *b, mask where, real t, real *u)
 {
-    long low = 0, high = s->pieces;
-    double last = 0.0, before = 0.0;
-    while (high - low > 1) {
-        const long middle = (low + high) / 2;
-        if (t < s->edges[middle])
-            high = middle;
-        else
-            low = middle;
+    for (long k = 0; k < b->m.inputs; ++k) {
+        real value = MODEL(sines)(b->waves + k, t);
+        if (any(where & (b->waves[k].others > 0.0)))
+            for (int lane = 0; lane < REAL_WIDTH; ++lane)
+                if (IN(where, lane) && LANE(&b->waves[k].others, 0, lane) > 0.0)
+                    LANE(&value, 0, lane) =
+                        MODEL(other_at)(b->lane[lane].segment->signals + k, LANE(&t, 0, lane));
+        u[k] = chosen(where, value, u[k]);
     }
-    const double begin = s->edges[low], end = s->edges[low + 1];
-    const double z = fmin(fmax((2.0 * t - begin - end) / (end - begin), -1.0), 1.0);
-    const double *const term = s->coefficients + low * s->terms;
-    for (long k = s->terms - 1; k > 0; --k) {
-        const double now = term[k] + 2.0 * z * last - before;
-        before = last, last = now;
-    }
-    return term[0] + z * last - before;
 }
 
-static void MODEL(inputs_at)(const MODEL(segment) *segment, long inputs, double t, real *u, int lane)
+/* The times at which the lanes' runs are. */
+static real MODEL(now)(const MODEL(batch) *b)
 {
-    for (long k = 0; k < inputs; ++k) {
-        const MODEL(signal) *s = segment->signals + k;
-        const double turns = (s->frequency + 0.5 * s->rate * t) * t;
-        double value = s->offset;
-        if (s->called)
-            value = s->called(t);
-        else if (s->pieces)
-            value = MODEL(piece_at)(s, t);
-        else if (s->amplitude != 0.0)
-            value += s->amplitude * sin(6.283185307179586476925 * turns + s->phase);
-        LANE(u, k, lane) = value;
-    }
+    real t = zero;
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        LANE(&t, 0, lane) = b->lane[lane].t;
+    return t;
 }
 
 /* Rates, switching functions and margins at a point; `weight` as in newton.c. */
@@ -191,9 +160,7 @@ static void MODEL(copy)(mask where, const real *from, real *to, long size)
 static void MODEL(rates_here)(MODEL(batch) *b, mask where, mask choosing)
 {
     MODEL(block) *m = &b->m;
-    for (int lane = 0; lane < REAL_WIDTH; ++lane)
-        if (IN(where, lane))
-            MODEL(inputs_at)(b->lane[lane].segment, m->inputs, b->lane[lane].t, b->some_inputs, lane);
+    MODEL(inputs_at)(b, where, MODEL(now)(b), b->some_inputs);
     for (int again = 0; again < 3; ++again) {
         MODEL(point)(b, m->x, m->branch, NULL, b->some_rate, b->some_side);
         if (!any(MODEL(choose)(m->branches, b->some_side, m->branch, choosing)))
@@ -243,8 +210,8 @@ static double MODEL(target)(const MODEL(batch) *b, const MODEL(lane) *l)
     return MODEL(samples_left)(b, l) ? b->times[l->run->sample] : MODEL(step_end)(b, l);
 }
 
-/* Plan a lane's next step: its length, and the inputs at its stages. */
-static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
+/* Plan a lane's next step: its length. */
+static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l)
 {
     double until = MODEL(until)(b, l), longest = fmin(l->h, b->longest);
     if (l->phase == STEP) {
@@ -266,9 +233,6 @@ static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
         l->length = l->part * l->known;
     else
         l->length = MODEL(target)(b, l) - MODEL(begin)(l);
-    for (long i = 0; i < STAGES; ++i)
-        MODEL(inputs_at)(l->segment, b->m.inputs, MODEL(begin)(l) + stage_at[i] * l->length,
-                         b->m.u + i * b->m.inputs, lane);
 }
 
 /* What a step adds to the ledger. */
