@@ -42,46 +42,47 @@ static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
     return near;
 }
 
-/* The lanes in which a switching function changes its sign within the step. */
-static mask MODEL(crossed)(const MODEL(batch) *b, mask where)
+/* The first sign change of switching function k in a lane, by its values on its branch. */
+static MODEL(crossing) MODEL(sign_change)(long k, const real *values, int lane)
+{
+    double at = 0.0, value = fmax(LANE(values, 0, lane), 0.0);
+    for (long i = 1; i < LOOKS; ++i) {
+        const long stage = i / PARTS, part = i % PARTS;
+        const double next = part ? between[stage * (PARTS - 1) + part - 1]
+            : stage <= STAGES    ? stage_at[stage - 1]
+                                 : 1.0;
+        const double side = LANE(values, i, lane);
+        if (side < 0.0)
+            return (MODEL(crossing)){k, at, next, value, side, part != 0};
+        at = next, value = side;
+    }
+    return (MODEL(crossing)){-1, 0.0, 1.0, 0.0, 0.0, 0};
+}
+
+/* Where a sign change is, by the values around it. */
+static double MODEL(place_of)(const MODEL(crossing) *c)
+{
+    return c->low + (c->high - c->low) * (c->at_low / (c->at_low - c->at_high));
+}
+
+/* The lanes in which a switching function changes its sign within the step; the first one of each lane. */
+static mask MODEL(crossed)(const MODEL(batch) *b, mask where, MODEL(crossing) *first)
 {
     mask found = nowhere;
     for (long k = 0; k < b->m.branches && any(where); ++k) {
-        real value[LOOKS];
-        if (!any(where & MODEL(looks)(b, k, value)))
-            continue;
-        for (long i = 1; i < LOOKS; ++i)
-            found |= value[i] < 0.0;
-    }
-    return found & where;
-}
-
-/* The first sign change in a lane's step; `which` is -1 if there is none. */
-static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
-{
-    MODEL(crossing) found = {-1, 0.0, 1.0, 0.0, 0.0, 0};
-    double first = 2.0;
-    for (long k = 0; k < b->m.branches; ++k) {
         real values[LOOKS];
-        if (!IN(MODEL(looks)(b, k, values), lane))
+        mask now = where & MODEL(looks)(b, k, values), changes = nowhere;
+        for (long i = 1; i < LOOKS && any(now); ++i)
+            changes |= values[i] < 0.0;
+        now &= changes;
+        if (!any(now))
             continue;
-        double at = 0.0, value = fmax(LANE(values, 0, lane), 0.0);
-        for (long i = 1; i < LOOKS; ++i) {
-            const long stage = i / PARTS, part = i % PARTS;
-            const double next = part ? between[stage * (PARTS - 1) + part - 1]
-                : stage <= STAGES    ? stage_at[stage - 1]
-                                     : 1.0;
-            const double side = LANE(values, i, lane);
-            if (side < 0.0) {
-                const double place = at + (next - at) * (value / (value - side));
-                if (place < first) {
-                    first = place;
-                    found = (MODEL(crossing)){k, at, next, value, side, part != 0};
-                }
-                break;
-            }
-            at = next, value = side;
+        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+            const MODEL(crossing) c = MODEL(sign_change)(k, values, lane);
+            if (IN(now, lane) && (!IN(found, lane) || MODEL(place_of)(&c) < MODEL(place_of)(first + lane)))
+                first[lane] = c;
         }
+        found |= now;
     }
     return found;
 }
@@ -90,45 +91,47 @@ static MODEL(crossing) MODEL(first_switch)(const MODEL(batch) *b, int lane)
 enum { AHEAD = 3 };
 
 /*
- * The time from the end of a lane's step to the next sign change of a switching function that approaches
+ * The time from the end of each lane's step to the next sign change of a switching function that approaches
  * zero there, or HUGE_VAL: where a cubic through its last four values is zero, if within AHEAD steps.
- * Only the lengths of steps follow from it.
+ * Only the lengths of steps follow from it. The switch at which a step ends does not count.
  */
-static double MODEL(until_switch)(const MODEL(batch) *b, int lane)
+static real MODEL(until_switch)(const MODEL(batch) *b, real h, mask where)
 {
     enum { LAST = STAGES < 2 ? STAGES + 2 : 4 };
     const MODEL(block) *m = &b->m;
-    double first = AHEAD;
+    real first = wide(AHEAD);
     for (long k = 0; k < m->branches; ++k) {
-        const double end = LANE(b->end_side, k, lane);
-        const double stage = LANE(m->side, (STAGES - 1) * m->branches + k, lane);
-        double ahead = (1.0 - stage_at[STAGES - 1]) * (end / (stage - end)); /* by the last two values */
-        if (k == b->lane[lane].which || !(ahead > 0.0 && ahead < first))
+        const real end = b->end_side[k], stage = m->side[(STAGES - 1) * m->branches + k];
+        real ahead = (1.0 - stage_at[STAGES - 1]) * (end / (stage - end)); /* by the last two values */
+        mask near = where & (ahead > 0.0) & (ahead < first);
+        if (!any(near))
             continue;
-        double at[LAST], value[LAST];
+        for (int lane = 0; lane < REAL_WIDTH; ++lane)
+            if (b->lane[lane].which == k)
+                SET(near, lane, 0);
+        double at[LAST];
+        real value[LAST];
         for (long j = 0; j < LAST; ++j) {
             const long i = STAGES + 2 - LAST + j; /* 0: begin; up to STAGES: stages; then the end */
             at[j] = i == 0 ? 0.0 : i <= STAGES ? stage_at[i - 1] : 1.0;
-            value[j] = i == 0 ? LANE(b->side, k, lane)
-                : i <= STAGES ? LANE(m->side, (i - 1) * m->branches + k, lane)
-                              : end;
+            value[j] = i == 0 ? b->side[k] : i <= STAGES ? m->side[(i - 1) * m->branches + k] : end;
         }
         for (long order = 1; order < LAST; ++order) /* divided differences */
             for (long j = 0; j < LAST - order; ++j)
                 value[j] = (value[j + 1] - value[j]) / (at[j + order] - at[j]);
-        for (int again = 0; again < 4 && ahead > 0.0 && ahead < first; ++again) { /* Newton's method */
-            double there = value[0], slope = 0.0;
+        for (int again = 0; again < 4; ++again) { /* Newton's method */
+            real there = value[0], slope = zero;
             for (long j = 1; j < LAST; ++j) {
-                const double step = 1.0 + ahead - at[j];
+                const real step = 1.0 + ahead - at[j];
                 slope = there + step * slope;
                 there = value[j] + step * there;
             }
             ahead -= there / slope;
+            near &= (ahead > 0.0) & (ahead < first);
         }
-        if (ahead > 0.0 && ahead < first)
-            first = ahead;
+        first = chosen(near, ahead, first);
     }
-    return first < AHEAD ? first * b->lane[lane].length : HUGE_VAL;
+    return chosen(first < AHEAD, first * h, wide(HUGE_VAL));
 }
 
 #if defined(BENDS)
@@ -137,14 +140,16 @@ static double MODEL(until_switch)(const MODEL(batch) *b, int lane)
  * Steps may cross kinks of energies, which have no branches. If such a kink within the step is the
  * cause, a step that ends just behind it suffices.
  */
-static double MODEL(to_kink)(const MODEL(batch) *b, int lane, double part)
+static double MODEL(to_kink)(const MODEL(batch) *b, const MODEL(crossing) *c, double part)
 {
-    const MODEL(crossing) c = MODEL(first_switch)(b, lane);
-    const double place = c.low + (c.high - c.low) * (c.at_low / (c.at_low - c.at_high));
+    const double place = MODEL(place_of)(c);
     const int inside = place > AT_ONCE && place < 1.0 - b->beyond;
     return inside ? place * (1.0 + 0.5 * b->beyond) : part;
 }
 #endif
+
+/* How precisely a sign change is located, as a part of what a step goes beyond it. */
+#define LOCATED 0.02
 
 /* Locate the sign changes of some lanes on the known polynomials, as fractions of the steps. */
 static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *crossing, double *part)
@@ -154,11 +159,10 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
     real at = zero;
     for (int again = 0; again < 60 && any(where); ++again) {
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            const MODEL(crossing) c = crossing[lane];
+            const MODEL(crossing) *c = crossing + lane;
             if (!IN(where, lane))
                 continue;
-            part[lane] = c.guessed ? c.high
-                                   : c.low + (c.high - c.low) * (c.at_low / (c.at_low - c.at_high));
+            part[lane] = c->guessed ? c->high : MODEL(place_of)(c);
             LANE(&at, 0, lane) = part[lane];
         }
         MODEL(inputs_at)(b, where, MODEL(now)(b) + at * h, b->some_inputs);
@@ -192,8 +196,11 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
                 c->at_low *= before[lane] > 0 ? 0.5 : 1.0;
                 before[lane] = 1;
             }
-            if (c->high - c->low <= AT_ONCE)
+            const double next = MODEL(place_of)(c);
+            if (c->high - c->low <= AT_ONCE || fabs(next - part[lane]) <= LOCATED * b->beyond * next) {
+                part[lane] = next;
                 SET(where, lane, 0);
+            }
         }
     }
 }

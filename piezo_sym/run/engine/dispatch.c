@@ -137,7 +137,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
 static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     const real worst = any(t->planned) ? MODEL(error)(b, t->h) : (real)zero;
-    const mask across = MODEL(crossed)(b, t->steps & t->found & none_of(b->m.over));
+    const mask across = MODEL(crossed)(b, t->steps & t->found & none_of(b->m.over), t->crossing);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         MODEL(lane) *l = b->lane + lane;
         if (!IN(t->steps, lane))
@@ -166,15 +166,13 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
 #endif
 #if defined(BENDS)
                 if (IN(across, lane) && !l->refused)
-                    part = MODEL(to_kink)(b, lane, part);
+                    part = MODEL(to_kink)(b, t->crossing + lane, part);
 #endif
                 MODEL(refuse)(b, lane, l->length * part);
                 continue;
             }
         }
-        if (IN(across, lane))
-            t->crossing[lane] = MODEL(first_switch)(b, lane);
-        const int crosses = t->crossing[lane].which >= 0;
+        const int crosses = IN(across, lane) != 0;
         SET(t->search, lane, crosses);
         SET(t->switched, lane, crosses || l->phase == CUT);
         SET(t->booked, lane, !crosses && l->phase == STEP);
@@ -194,9 +192,14 @@ static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(dispatch) *t)
             b->lane[lane].phase = STEP;
             SET(t->booked, lane, 0);
         }
-        if (!IN(t->booked, lane) || !IN(t->steps, lane))
+    }
+    const mask to_end = t->steps & t->booked, ends = to_end & t->good & none_of(b->m.over);
+    const real ahead = b->fixed > 0.0 ? wide(HUGE_VAL) : MODEL(until_switch)(b, t->h, ends);
+    for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+        if (!IN(to_end, lane))
             continue;
         const int good = IN(t->good, lane) != 0;
+        b->lane[lane].ahead = LANE(&ahead, 0, lane);
         SET(t->booked, lane, good && MODEL(accept)(b, lane));
         if (good)
             continue;

@@ -74,8 +74,6 @@ static int MODEL(accept)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;
     l->step = l->length;
-    if (b->fixed == 0.0 && !IN(b->m.over, lane))
-        l->ahead = MODEL(until_switch)(b, lane);
     return MODEL(all_sampled)(b, lane);
 }
 
