@@ -208,11 +208,24 @@ static inline real cos_of(real a)
 #else
 #define RADICAND(a) size_of(a)
 #endif
+/* Roots of numbers that are not negative; GCC does not join those of lanes by itself. */
+static inline real roots_of(real a)
+{
+#if REAL_WIDTH == 8 && defined(__AVX512F__) && !defined(__clang__)
+    enum { ROUNDING_AS_SET = 4 };
+    return (real)__builtin_ia32_sqrtpd512_mask(a, a, (unsigned char)-1, ROUNDING_AS_SET);
+#elif REAL_WIDTH == 4 && defined(__AVX__) && !defined(__clang__)
+    return (real)__builtin_ia32_sqrtpd256(a);
+#else
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        LANE(&a, 0, lane) = sqrt(LANE(&a, 0, lane));
+    return a;
+#endif
+}
+
 static inline real sqrt_of(real a)
 {
-    real found = RADICAND(a);
-    for (int lane = 0; lane < REAL_WIDTH; ++lane)
-        LANE(&found, 0, lane) = sqrt(LANE(&found, 0, lane));
+    const real found = roots_of(RADICAND(a));
     return chosen(a < 0.0, -found, found);
 }
 
