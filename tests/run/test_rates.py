@@ -121,23 +121,23 @@ def test_functions_are_those_of_the_engine():
 
 EXACT = """
 #include "real.h"
-void each(const double *x, double *e, double *m, long count);
-void each(const double *x, double *e, double *m, long count)
+void each(const double *x, double *out, long count);
+void each(const double *x, double *out, long count)
 {
     for (long n = 0; n + REAL_WIDTH <= count; n += REAL_WIDTH) {
         real v;
         memcpy(&v, x + n, sizeof v);
-        const real a = exp_of(v), b = expm1_of(v);
-        memcpy(e + n, &a, sizeof a);
-        memcpy(m + n, &b, sizeof b);
+        const real found[] = {exp_of(v), expm1_of(v), sin_of(v), cos_of(v), sqrt_of(v)};
+        for (long k = 0; k < 5; ++k)
+            memcpy(out + k * count + n, found + k, sizeof v);
     }
 }
 """
 
 
 @pytest.fixture(scope="module")
-def exponentials(tmp_path_factory):
-    """Return a function that gives exp(x) and exp(x) - 1 as vectors compute them."""
+def in_vectors(tmp_path_factory):
+    """Return a function that gives exp, expm1, sin, cos and sqrt of x as vectors compute them."""
     folder = tmp_path_factory.mktemp("built")
     (folder / "real.h").write_text(numbers_source("real.h"))
     (folder / "each.c").write_text(EXACT)
@@ -146,10 +146,10 @@ def exponentials(tmp_path_factory):
 
     def call(x):
         x = np.ascontiguousarray(x)
-        e, m = np.full((2, x.size), np.nan)
-        at = [ctypes.c_void_p(array.ctypes.data) for array in (x, e, m)]
+        out = np.full((5, x.size), np.nan)
+        at = [ctypes.c_void_p(array.ctypes.data) for array in (x, out)]
         library.each(*at, ctypes.c_long(x.size))
-        return e, m
+        return out
 
     return call
 
@@ -173,20 +173,38 @@ def ulps(found, exact):
         )
 
 
-def test_exponentials_of_vectors_are_exact_to_two_units_of_the_last_place(exponentials):
+def test_exponentials_of_vectors_are_exact_to_two_units_of_the_last_place(in_vectors):
     x = points()
-    found = exponentials(x)
+    found = in_vectors(x)[:2]
     with mp.workdps(40):
         exact = [[f(mp.mpf(float(value))) for value in x] for f in (mp.exp, mp.expm1)]
     for one, other in zip(found, exact, strict=True):
         assert ulps(one, other) <= MOST_ULPS
 
 
-def test_exponentials_of_vectors_end_as_those_of_numbers_do(exponentials):
+def test_exponentials_of_vectors_end_as_those_of_numbers_do(in_vectors):
     x = np.array([np.inf, -np.inf, np.nan, 800.0, -800.0, -50.0, 0.0, -0.0])
     with np.errstate(over="ignore"):
-        assert np.array_equal(exponentials(x)[0], np.exp(x), equal_nan=True)
-        assert np.array_equal(exponentials(x)[1], np.expm1(x), equal_nan=True)
+        assert np.array_equal(in_vectors(x)[0], np.exp(x), equal_nan=True)
+        assert np.array_equal(in_vectors(x)[1], np.expm1(x), equal_nan=True)
+
+
+def test_sines_and_roots_of_vectors_are_exact_to_two_units_of_the_last_place(in_vectors):
+    draw = np.random.default_rng(1)
+    near = np.arange(-60, 60)[:, None] * np.pi / 4 + draw.uniform(-1e-9, 1e-9, (120, 8))
+    far = [draw.uniform(-size, size, 400) for size in (1.0, 7.0, 1e3, 1e6, 1e9, 1e300)]
+    tiny = 10.0 ** draw.uniform(-320, 0, 400)
+    x = np.concatenate([near.ravel(), *far, tiny, -tiny])
+    _, _, *found, roots = in_vectors(x)
+    with mp.workdps(400):
+        exact = [[f(mp.mpf(float(value))) for value in x] for f in (mp.sin, mp.cos)]
+    for one, other in zip(found, exact, strict=True):
+        assert ulps(one, other) <= MOST_ULPS
+    assert np.array_equal(roots, np.copysign(np.sqrt(np.abs(x)), x))  # odd: see real.h
+    ends = in_vectors(np.array([np.inf, -np.inf, np.nan, 0.0, -0.0, 1e308, -1e308, 5e-324]))
+    with np.errstate(invalid="ignore"):
+        ends_by_numpy = np.sin([np.inf, -np.inf, np.nan, 0.0, -0.0, 1e308, -1e308, 5e-324])
+    assert np.allclose(ends[2], ends_by_numpy, rtol=1e-15, atol=0, equal_nan=True)
 
 
 def test_no_name_of_a_spec_is_one_of_the_vectors():

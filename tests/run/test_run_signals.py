@@ -68,7 +68,8 @@ def test_segments_tile_the_run_without_jumps(sigs, duration):
 
 def test_sine_is_the_formula():
     t = np.linspace(0, 0.1, 77)
-    assert np.array_equal(sine(100, 100)(t), 100 * np.sin(2 * pi * 100 * t))
+    assert sine(100, 100)(t) == pytest.approx(100 * np.sin(2 * pi * 100 * t), abs=1e-12)
+    assert sine(1, 50, phase=0.3)(1e4 + 0.005) == pytest.approx(np.sin(0.3 + pi / 2), abs=1e-9)
     assert sine(2, 3, 5, pi / 2)(0.0) == 7
     assert sine(1, 50).max_step(1.0) <= 1 / 50 / 4
 

@@ -45,6 +45,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(rate, m->n);
     PLACE(side, m->branches);
     PLACE(after, m->branches);
+    PLACE(slack, m->branches);
     PLACE(sums, m->booked);
     PLACE(lost, m->booked);
     PLACE(known, STAGES * m->n);
@@ -135,9 +136,9 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
     b->lane[lane].steady = b->lane[lane].ahead = b->lane[lane].hard = HUGE_VAL;
     b->lane[lane].kept = -HUGE_VAL;
-    b->lane[lane].which = b->lane[lane].turned = -1;
+    b->lane[lane].which = b->lane[lane].turned = b->lane[lane].goal = -1;
     for (long k = 0; k < m->branches; ++k)
-        LANE(b->after, k, lane) = 0.0;
+        LANE(b->after, k, lane) = LANE(b->slack, k, lane) = 0.0;
     b->lane[lane].since = run->t;
     SET(b->m.over, lane, b->over_kinks);
     MODEL(sample_here)(b, lane);

@@ -93,11 +93,12 @@ enum { AHEAD = 3 };
 /*
  * The time from the end of each lane's step to the next sign change of a switching function that approaches
  * zero there, or HUGE_VAL: where a cubic through its last four values is zero, if within AHEAD steps.
- * Only the lengths of steps follow from it. The switch at which a step ends does not count.
+ * Only the lengths of steps follow from it. The switch at which a step ends does not count. `which` is written
+ * where there is one.
  */
-static real MODEL(until_switch)(const MODEL(batch) *b, real h, mask where)
+static real MODEL(until_switch)(const MODEL(batch) *b, real h, mask where, real *which)
 {
-    enum { LAST = STAGES < 2 ? STAGES + 2 : 4 };
+    enum { LAST = STAGES + 2 };
     const MODEL(block) *m = &b->m;
     real first = wide(AHEAD);
     for (long k = 0; k < m->branches; ++k) {
@@ -106,15 +107,11 @@ static real MODEL(until_switch)(const MODEL(batch) *b, real h, mask where)
         mask near = where & (ahead > 0.0) & (ahead < first);
         if (!any(near))
             continue;
-        for (int lane = 0; lane < REAL_WIDTH; ++lane)
-            if (b->lane[lane].which == k)
-                SET(near, lane, 0);
-        double at[LAST];
-        real value[LAST];
-        for (long j = 0; j < LAST; ++j) {
-            const long i = STAGES + 2 - LAST + j; /* 0: begin; up to STAGES: stages; then the end */
-            at[j] = i == 0 ? 0.0 : i <= STAGES ? stage_at[i - 1] : 1.0;
-            value[j] = i == 0 ? b->side[k] : i <= STAGES ? m->side[(i - 1) * m->branches + k] : end;
+        double at[LAST] = {0.0};
+        real value[LAST] = {b->side[k]};
+        for (long i = 1; i < LAST; ++i) {
+            at[i] = i <= STAGES ? stage_at[i - 1] : 1.0;
+            value[i] = i <= STAGES ? m->side[(i - 1) * m->branches + k] : end;
         }
         for (long order = 1; order < LAST; ++order) /* divided differences */
             for (long j = 0; j < LAST - order; ++j)
@@ -130,6 +127,7 @@ static real MODEL(until_switch)(const MODEL(batch) *b, real h, mask where)
             near &= (ahead > 0.0) & (ahead < first);
         }
         first = chosen(near, ahead, first);
+        *which = chosen(near, wide((double)k), *which);
     }
     return chosen(first < AHEAD, first * h, wide(HUGE_VAL));
 }
@@ -147,6 +145,57 @@ static double MODEL(to_kink)(const MODEL(batch) *b, const MODEL(crossing) *c, do
     return inside ? place * (1.0 + 0.5 * b->beyond) : part;
 }
 #endif
+
+/* By which part of its length a lane's step is to end behind a switch, as well as is known. */
+static double MODEL(over_switch)(const MODEL(batch) *b, int lane, long which, double length, double most)
+{
+    const double slack = LANE(b->slack, which, lane);
+    if (b->fixed > 0.0 || !(slack > 0.0))
+        return most;
+    return fmin(fmax(0.5 * slack / length, AT_END), 0.5 * BEHIND);
+}
+
+/*
+ * The errors, in tolerances, of steps whose ends are `behind` a switch by some time: their rates go on as
+ * before it. What is known of each switch follows.
+ */
+static real MODEL(kink_error)(MODEL(batch) *b, real begin, real h, real behind, mask where)
+{
+    const MODEL(block) *m = &b->m;
+    real worst = zero;
+    memcpy(b->end_branch, m->branch + (STAGES - 1) * m->branches, (size_t)m->branches * sizeof(real));
+    MODEL(choose)(m->branches, b->end_side, b->end_branch, where);
+    MODEL(inputs_at)(b, where, begin + h, b->some_inputs);
+    MODEL(point)(b, m->end, b->end_branch, stage_end, b->some_rate, b->some_side);
+    for (long k = 0; k < m->n; ++k) {
+        const real size = largest_of(m->largest[k], size_of(m->end[k])) + 1e-300;
+        worst = largest_of(size_of(b->some_rate[k] - b->end_rate[k]) * behind / size, worst);
+    }
+    return worst / wide(b->tolerance);
+}
+
+/* The lanes whose steps may end where they do, behind the switches that are located in them. */
+static mask MODEL(ends_behind)(MODEL(batch) *b, mask where, real begin, real h,
+                               const MODEL(crossing) *crossing, const double *part)
+{
+    mask near = nowhere;
+    real behind = zero;
+    for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+        const double most = b->fixed > 0.0 ? b->beyond : BEHIND;
+        LANE(&behind, 0, lane) = (1.0 - part[lane]) * LANE(&h, 0, lane);
+        SET(near, lane, IN(where, lane) && crossing[lane].which >= 0 && 1.0 - part[lane] < most);
+    }
+    if (b->fixed > 0.0 || !any(near))
+        return near;
+    const real error = MODEL(kink_error)(b, begin, h, behind, near) / KINK_ERROR;
+    const mask fits = near & (error <= 1.0);
+    for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+        const double times = LANE(&error, 0, lane), time = LANE(&behind, 0, lane);
+        if (IN(near, lane) && times > 0.0)
+            LANE(b->slack, crossing[lane].which, lane) = time * (times < 1.0 ? sqrt(1.0 / times) : 1.0 / times);
+    }
+    return fits;
+}
 
 /* How precisely a sign change is located, as a part of what a step goes beyond it. */
 #define LOCATED 0.02
@@ -197,7 +246,8 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
                 before[lane] = 1;
             }
             const double next = MODEL(place_of)(c);
-            if (c->high - c->low <= AT_ONCE || fabs(next - part[lane]) <= LOCATED * b->beyond * next) {
+            const double over = MODEL(over_switch)(b, lane, c->which, b->lane[lane].length, b->beyond);
+            if (c->high - c->low <= AT_ONCE || fabs(next - part[lane]) <= LOCATED * over * next) {
                 part[lane] = next;
                 SET(where, lane, 0);
             }

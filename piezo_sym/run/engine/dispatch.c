@@ -173,33 +173,50 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
             }
         }
         const int crosses = IN(across, lane) != 0;
+        const int aims = l->aimed > 0.0 && l->phase == STEP && !crosses;
+        l->which = aims ? l->goal : l->which;
         SET(t->search, lane, crosses);
-        SET(t->switched, lane, crosses || l->phase == CUT);
-        SET(t->booked, lane, !crosses && l->phase == STEP);
+        SET(t->switched, lane, crosses || aims || l->phase == CUT);
+        SET(t->booked, lane, !IN(t->switched, lane) && l->phase == STEP);
     }
+}
+
+/* Tell lanes when the next switch comes after their steps, and which. */
+static void MODEL(look_ahead)(MODEL(batch) *b, const MODEL(dispatch) *t)
+{
+    const mask where = t->steps & t->found & none_of(b->m.over);
+    real goal = wide(-1.0);
+    const real ahead = MODEL(until_switch)(b, t->h, where, &goal);
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        if (IN(where, lane)) {
+            b->lane[lane].ahead = LANE(&ahead, 0, lane);
+            b->lane[lane].goal = (long)LANE(&goal, 0, lane);
+        }
 }
 
 /* Cut steps at switches, refuse those that leave the domain, and wait for samples. */
 static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
-    if (any(t->search))
+    mask fits = nowhere;
+    if (any(t->search)) {
         MODEL(locate)(b, t->search, t->h, t->crossing, t->part);
+        fits = MODEL(ends_behind)(b, t->search, t->begin, t->h, t->crossing, t->part);
+    }
+    MODEL(look_ahead)(b, t);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         if (IN(t->switched, lane))
-            SET(t->booked, lane, MODEL(cut)(b, lane, t->crossing + lane, t->part[lane], &t->turns));
+            SET(t->booked, lane, MODEL(cut)(b, lane, t->crossing + lane, t->part[lane], IN(fits, lane) != 0, &t->turns));
         if (IN(t->booked, lane) && IN(b->m.sketched, lane)) { /* no switch after all: solve it fully */
             b->lane[lane].settled = 1;
             b->lane[lane].phase = STEP;
             SET(t->booked, lane, 0);
         }
     }
-    const mask to_end = t->steps & t->booked, ends = to_end & t->good & none_of(b->m.over);
-    const real ahead = b->fixed > 0.0 ? wide(HUGE_VAL) : MODEL(until_switch)(b, t->h, ends);
+    const mask to_end = t->steps & t->booked;
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         if (!IN(to_end, lane))
             continue;
         const int good = IN(t->good, lane) != 0;
-        b->lane[lane].ahead = LANE(&ahead, 0, lane);
         SET(t->booked, lane, good && MODEL(accept)(b, lane));
         if (good)
             continue;

@@ -36,7 +36,7 @@ static void MODEL(enter)(MODEL(wave) *waves, const MODEL(segment) *segment, long
     }
 }
 
-/* The values of sines at the times t; whole turns are left out, so that long runs stay accurate. */
+/* The values of sines at the times t. Whole turns are left out: angles stay small in long runs, too. */
 static inline real MODEL(sines)(const MODEL(wave) *w, real t)
 {
     if (!any(w->amplitude != 0.0))

@@ -17,7 +17,7 @@
  * how far such a step goes over it.
  */
 enum { MOST_AIMS = 2 };
-#define OVER_SWITCH 1.1
+#define OVER_SWITCH (0.5 * BEHIND)
 /* The first step after a switch of which nothing is known yet is this part of the one before. */
 #define AFTER_SWITCH 0.3
 /* The length after a switch grows by no more than this factor from one time to the next. */
@@ -64,9 +64,10 @@ static void MODEL(next_length)(MODEL(batch) *b, MODEL(lane) *l, int lane, double
     l->turned = l->which;
     l->h = fmin(l->h, BELOW_HARD * l->hard);
     l->hard *= LESS_HARD;
-    const int aims = missed == 0.0 && l->aims < MOST_AIMS && OVER_SWITCH * l->ahead < l->h;
+    const double to_switch = l->goal < 0 ? HUGE_VAL : l->ahead * (1.0 + MODEL(over_switch)(b, lane, l->goal, l->ahead, OVER_SWITCH));
+    const int aims = missed == 0.0 && l->aims < MOST_AIMS && to_switch < l->h;
     l->aimed = aims ? l->h : 0.0;
     l->aims = aims ? l->aims + 1 : 0;
-    l->h = aims ? OVER_SWITCH * l->ahead : l->h;
+    l->h = aims ? to_switch : l->h;
     l->ahead = HUGE_VAL;
 }

@@ -143,8 +143,11 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
     return l->which >= 0 && l->phase == STEP;
 }
 
+/* A step that was aimed at a switch, and ends before it, is repeated up to there if that is not much longer. */
+#define SHORT 1.1
+
 /* Whether a step that may have to be cut at a switch is accepted; else it is repeated. */
-static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, double part, mask *turns)
+static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, double part, int fits, mask *turns)
 {
     MODEL(lane) *l = b->lane + lane;
     if (c->which >= 0) {
@@ -158,7 +161,7 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, doubl
                 MODEL(stuck)(b, lane);
             return 0;
         }
-        if (1.0 - part < b->beyond)
+        if (fits)
             return 1;
     } else if (l->which < 0)
         return 1;
@@ -166,15 +169,16 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, doubl
         const double begin = LANE(b->side, l->which, lane), end = LANE(b->end_side, l->which, lane);
         if (fabs(end) <= AT_END * fabs(begin))
             return 1;
-        const double stage = LANE(b->m.side, (STAGES - 1) * b->m.branches + l->which, lane);
-        /* short of the switch: on by what is missing */
-        part = 1.0 + (1.0 - stage_at[STAGES - 1]) * (end / (stage - end));
-        if (!(part > 1.0 && part < 1.5))
+        part = 1.0 + (l->goal == l->which ? l->ahead / l->length : 0.0); /* short of the switch */
+        const double most = fmin((MODEL(until)(b, l) - l->t) / l->length, l->phase == CUT ? 1.5 : SHORT);
+        if (!(part > 1.0 && part < most)) {
+            l->which = l->phase == CUT ? l->which : -1;
             return 1;
+        }
     }
     if (++l->cuts > MOST_CUTS)
         return 1;
-    l->part = part * (1.0 + 0.5 * b->beyond);
+    l->part = part * (1.0 + MODEL(over_switch)(b, lane, l->which, part * l->length, 0.5 * b->beyond));
     l->phase = CUT;
     return 0;
 }

@@ -45,6 +45,7 @@ typedef struct {
     double hard;   /* a length at which steps are not solved: that of the last such step, and growing */
     double aimed;  /* the length of a step but for a switch, just behind which it is to end; or 0 */
     double ahead;  /* time from the end of the step to the next switch, or HUGE_VAL */
+    long goal;     /* that switch */
     int phase, behind, predicted, last, cuts, refused, halved;
     int idle;    /* switches in a row at one time */
     int aims;    /* steps in a row that were to end behind a switch */
@@ -79,6 +80,7 @@ typedef struct {
     double beyond; /* part of a step that may lie beyond the switch at its end, where no stage lies */
     real *rate, *side, *sums, *lost, *known;       /* at the beginning of a step; of the step before */
     real *after; /* branches: the length for a step after each switch; 0: not known */
+    real *slack; /* branches: by how much time a step may end behind each switch; 0: not known */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
@@ -109,8 +111,14 @@ enum { TRIED = 32, AGAIN = 12 };
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
 /*
- * How far a step may go beyond its switch, where no stage lies.  A kink adds an error proportional to
- * the square of that, about this fraction of the tolerance; a jump, one proportional to it.
+ * A step may end somewhat beyond its switch, where no stage lies: BEHIND is the longest such part. That
+ * adds at most KINK_ERROR of the tolerance to its error, by the rates on both sides.
+ */
+#define BEHIND fmin(0.05, 0.99 * (1.0 - stage_at[STAGES - 1]))
+#define KINK_ERROR 0.1
+/*
+ * How far a step goes beyond a switch of which that is not known yet, and a fixed one. A kink adds an error
+ * proportional to the square of that, about this fraction of the tolerance; a jump, one proportional to it.
  */
 #define BEYOND 0.01
 
