@@ -181,6 +181,31 @@ static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
     return where & MODEL(within)(b->some_margin) & none_of(going);
 }
 
+/*
+ * Prepare a lane for the next step of its survey; returns whether there is one. A step that fails is tried
+ * anew from the middle of the one before it: there fast modes do not ring, as they do from end to end of
+ * steps too long for them, with an amplitude that short steps would take for a motion.
+ */
+static int MODEL(go_on_surveying)(MODEL(batch) *b, int lane, double longest, int good)
+{
+    MODEL(lane) *l = b->lane + lane;
+    const double stop = MODEL(until)(b, l);
+    if (!good) {
+        l->t -= 0.5 * l->known;
+        l->known = 0.0;
+        l->h *= 0.25;
+        return l->h > longest * SHORTEST;
+    }
+    l->known = l->h;
+    l->t = l->t + l->h < stop - 1e-9 * l->h ? l->t + l->h : stop;
+    l->h = fmin(2.0 * l->h, longest);
+    if (l->t >= stop && l->t < b->stop) {
+        MODEL(enter)(b->waves, ++l->segment, b->m.inputs, lane);
+        l->known = 0.0;
+    }
+    return l->t < b->stop;
+}
+
 /* Survey as many runs as there are lanes, from `first` on, by steps of at most this length. */
 static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
 {
@@ -202,26 +227,18 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
         }
         MODEL(inputs_at)(b, going, MODEL(now)(b) + 0.5 * h, b->some_inputs);
         const mask good = MODEL(midpoint)(b, h, going);
+        mask back = nowhere;
+        for (int lane = 0; lane < REAL_WIDTH; ++lane)
+            SET(back, lane, IN(going, lane) && !IN(good, lane) && b->lane[lane].known > 0.0);
         for (long k = 0; k < m->n; ++k) {
-            m->x[k] = chosen(good, 2.0 * m->reached[k] - m->x[k], m->x[k]);
-            m->largest[k] = largest_of(size_of(m->x[k]), m->largest[k]);
+            const real middle = m->reached[k];
+            m->largest[k] = chosen(good, largest_of(size_of(middle), m->largest[k]), m->largest[k]);
+            m->x[k] = chosen(good, 2.0 * middle - m->x[k], chosen(back, b->kept[k], m->x[k]));
+            b->kept[k] = chosen(good, middle, b->kept[k]);
         }
-        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            MODEL(lane) *l = b->lane + lane;
-            const double stop = IN(going, lane) ? MODEL(until)(b, l) : 0.0;
-            if (!IN(going, lane))
-                continue;
-            if (!IN(good, lane)) {
-                l->h *= 0.25;
-                SET(going, lane, l->h > longest * SHORTEST);
-                continue;
-            }
-            l->t = l->t + l->h < stop - 1e-9 * l->h ? l->t + l->h : stop;
-            l->h = fmin(2.0 * l->h, longest);
-            SET(going, lane, l->t < b->stop);
-            if (l->t >= stop && l->t < b->stop)
-                MODEL(enter)(b->waves, ++l->segment, m->inputs, lane);
-        }
+        for (int lane = 0; lane < REAL_WIDTH; ++lane)
+            if (IN(going, lane))
+                SET(going, lane, MODEL(go_on_surveying)(b, lane, longest, IN(good, lane) != 0));
     }
     for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {
         for (long k = 0; k < m->n; ++k)

@@ -92,9 +92,8 @@ enum { AHEAD = 3 };
 
 /*
  * The time from the end of each lane's step to the next sign change of a switching function that approaches
- * zero there, or HUGE_VAL: where a cubic through its last four values is zero, if within AHEAD steps.
- * Only the lengths of steps follow from it. The switch at which a step ends does not count. `which` is written
- * where there is one.
+ * zero there, or HUGE_VAL: where the polynomial through its values is zero, if within AHEAD steps. Only
+ * the lengths of steps follow from it. `which` is written where there is one.
  */
 static real MODEL(until_switch)(const MODEL(batch) *b, real h, mask where, real *which)
 {

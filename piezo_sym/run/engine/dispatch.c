@@ -13,6 +13,7 @@ typedef struct {
     mask resumed;                      /* whose step begins at the last sample */
     mask found, good;                  /* lanes whose step has rates; and lies in the domain */
     mask search, switched;             /* where a switch has to be located; and a step may be cut */
+    mask fits;                         /* whose step may end where it does, behind its switch */
     mask booked, turns, ends;          /* whose step counts; whose branches turn; who steps to kinks */
     MODEL(crossing) crossing[REAL_WIDTH];
     double part[REAL_WIDTH];
@@ -181,6 +182,25 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
     }
 }
 
+/* Whether a lane's step ends at a switch, or without one; else it is cut, or begins on another branch. */
+static int MODEL(ends)(MODEL(batch) *b, MODEL(dispatch) *t, int lane)
+{
+    MODEL(lane) *l = b->lane + lane;
+    const long which = t->crossing[lane].which;
+    if (which < 0)
+        return l->which < 0 || MODEL(reaches)(b, lane);
+    l->which = which;
+    if (t->part[lane] >= AT_ONCE)
+        return IN(t->fits, lane) || !MODEL(cut)(b, lane, t->part[lane]);
+    MODEL(turn)(b, lane, which, 0);
+    SET(t->turns, lane, 1);
+    l->known = 0.0;
+    l->phase = STEP;
+    if (++l->idle > MOST_REFUSED)
+        MODEL(stuck)(b, lane);
+    return 0;
+}
+
 /* Tell lanes when the next switch comes after their steps, and which. */
 static void MODEL(look_ahead)(MODEL(batch) *b, const MODEL(dispatch) *t)
 {
@@ -197,15 +217,14 @@ static void MODEL(look_ahead)(MODEL(batch) *b, const MODEL(dispatch) *t)
 /* Cut steps at switches, refuse those that leave the domain, and wait for samples. */
 static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
-    mask fits = nowhere;
     if (any(t->search)) {
         MODEL(locate)(b, t->search, t->h, t->crossing, t->part);
-        fits = MODEL(ends_behind)(b, t->search, t->begin, t->h, t->crossing, t->part);
+        t->fits = MODEL(ends_behind)(b, t->search, t->begin, t->h, t->crossing, t->part);
     }
     MODEL(look_ahead)(b, t);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         if (IN(t->switched, lane))
-            SET(t->booked, lane, MODEL(cut)(b, lane, t->crossing + lane, t->part[lane], IN(fits, lane) != 0, &t->turns));
+            SET(t->booked, lane, MODEL(ends)(b, t, lane));
         if (IN(t->booked, lane) && IN(b->m.sketched, lane)) { /* no switch after all: solve it fully */
             b->lane[lane].settled = 1;
             b->lane[lane].phase = STEP;

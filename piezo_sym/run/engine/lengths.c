@@ -14,7 +14,7 @@
 #define LESS_HARD 2.0
 /*
  * How many steps in a row may be aimed at a switch, since at rest switches follow each other without end; and
- * how far such a step goes over it.
+ * how far such a step is to go over it, as a part of it, where nothing is known of the switch.
  */
 enum { MOST_AIMS = 2 };
 #define OVER_SWITCH (0.5 * BEHIND)
@@ -64,7 +64,8 @@ static void MODEL(next_length)(MODEL(batch) *b, MODEL(lane) *l, int lane, double
     l->turned = l->which;
     l->h = fmin(l->h, BELOW_HARD * l->hard);
     l->hard *= LESS_HARD;
-    const double to_switch = l->goal < 0 ? HUGE_VAL : l->ahead * (1.0 + MODEL(over_switch)(b, lane, l->goal, l->ahead, OVER_SWITCH));
+    const double over = l->goal < 0 ? 0.0 : MODEL(over_switch)(b, lane, l->goal, l->ahead, OVER_SWITCH);
+    const double to_switch = l->ahead * (1.0 + over);
     const int aims = missed == 0.0 && l->aims < MOST_AIMS && to_switch < l->h;
     l->aimed = aims ? l->h : 0.0;
     l->aims = aims ? l->aims + 1 : 0;

@@ -143,42 +143,33 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
     return l->which >= 0 && l->phase == STEP;
 }
 
-/* A step that was aimed at a switch, and ends before it, is repeated up to there if that is not much longer. */
-#define SHORT 1.1
-
-/* Whether a step that may have to be cut at a switch is accepted; else it is repeated. */
-static int MODEL(cut)(MODEL(batch) *b, int lane, const MODEL(crossing) *c, double part, int fits, mask *turns)
+/* Let a lane repeat its step up to a switch, at a part of it, and a little more; 0 after too many times. */
+static int MODEL(cut)(const MODEL(batch) *b, int lane, double part)
 {
     MODEL(lane) *l = b->lane + lane;
-    if (c->which >= 0) {
-        l->which = c->which;
-        if (part < AT_ONCE) {
-            MODEL(turn)(b, lane, c->which, 0);
-            SET(*turns, lane, 1);
-            l->known = 0.0;
-            l->phase = STEP;
-            if (++l->idle > MOST_REFUSED)
-                MODEL(stuck)(b, lane);
-            return 0;
-        }
-        if (fits)
-            return 1;
-    } else if (l->which < 0)
-        return 1;
-    else {
-        const double begin = LANE(b->side, l->which, lane), end = LANE(b->end_side, l->which, lane);
-        if (fabs(end) <= AT_END * fabs(begin))
-            return 1;
-        part = 1.0 + (l->goal == l->which ? l->ahead / l->length : 0.0); /* short of the switch */
-        const double most = fmin((MODEL(until)(b, l) - l->t) / l->length, l->phase == CUT ? 1.5 : SHORT);
-        if (!(part > 1.0 && part < most)) {
-            l->which = l->phase == CUT ? l->which : -1;
-            return 1;
-        }
-    }
     if (++l->cuts > MOST_CUTS)
-        return 1;
+        return 0;
     l->part = part * (1.0 + MODEL(over_switch)(b, lane, l->which, part * l->length, 0.5 * b->beyond));
     l->phase = CUT;
-    return 0;
+    return 1;
+}
+
+/* A step that was aimed at a switch is repeated up to there if it ends before it, by at most this factor. */
+#define SHORT 1.1
+/* The same for a step that was cut. */
+#define SHORT_CUT 1.5
+
+/* Whether a lane's step, which was to end at a switch and does not cross it, is not repeated up to there. */
+static int MODEL(reaches)(const MODEL(batch) *b, int lane)
+{
+    MODEL(lane) *l = b->lane + lane;
+    const double begin = LANE(b->side, l->which, lane), end = LANE(b->end_side, l->which, lane);
+    if (fabs(end) <= AT_END * fabs(begin))
+        return 1;
+    const double longest = (MODEL(until)(b, l) - l->t) / l->length;
+    const double part = 1.0 + (l->goal == l->which ? l->ahead / l->length : 0.0);
+    if (part > 1.0 && part < fmin(longest, l->phase == CUT ? SHORT_CUT : SHORT))
+        return !MODEL(cut)(b, lane, part);
+    l->which = l->phase == CUT ? l->which : -1;
+    return 1;
 }
