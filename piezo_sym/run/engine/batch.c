@@ -46,6 +46,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(side, m->branches);
     PLACE(after, m->branches);
     PLACE(slack, m->branches);
+    PLACE(widest, m->branches);
     PLACE(sums, m->booked);
     PLACE(lost, m->booked);
     PLACE(known, STAGES * m->n);
@@ -138,7 +139,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     b->lane[lane].kept = -HUGE_VAL;
     b->lane[lane].which = b->lane[lane].turned = b->lane[lane].goal = -1;
     for (long k = 0; k < m->branches; ++k)
-        LANE(b->after, k, lane) = LANE(b->slack, k, lane) = 0.0;
+        LANE(b->after, k, lane) = LANE(b->slack, k, lane) = LANE(b->widest, k, lane) = 0.0;
     b->lane[lane].since = run->t;
     SET(b->m.over, lane, b->over_kinks);
     MODEL(sample_here)(b, lane);

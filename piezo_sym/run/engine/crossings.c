@@ -28,7 +28,9 @@ static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
         low = least(value[i * PARTS], low);
         high = largest_of(value[i * PARTS], high);
     }
-    const mask near = low < high - low; /* else the values are too far from zero */
+    const real size = largest_of(size_of(low), size_of(high));
+    mask near = low < high - low; /* else the values are too far from zero */
+    near &= size > NO_SWITCH * b->widest[k];
     if (!any(near))
         return near;
     for (long i = 0; i <= STAGES; ++i)
@@ -103,7 +105,7 @@ static real MODEL(until_switch)(const MODEL(batch) *b, real h, mask where, real 
     for (long k = 0; k < m->branches; ++k) {
         const real end = b->end_side[k], stage = m->side[(STAGES - 1) * m->branches + k];
         real ahead = (1.0 - stage_at[STAGES - 1]) * (end / (stage - end)); /* by the last two values */
-        mask near = where & (ahead > 0.0) & (ahead < first);
+        mask near = where & (ahead > 0.0) & (ahead < first) & (size_of(end) > NO_SWITCH * b->widest[k]);
         if (!any(near))
             continue;
         double at[LAST] = {0.0};

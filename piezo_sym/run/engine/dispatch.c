@@ -283,6 +283,11 @@ static void MODEL(book)(MODEL(batch) *b, MODEL(dispatch) *t)
             SET(t->ends, lane, 1);
     }
     MODEL(copy)(t->booked, b->end_side, b->side, m->branches);
+    for (long k = 0; k < m->branches; ++k) {
+        const real size = size_of(b->side[k]);
+        const mask more = size > b->widest[k];
+        b->widest[k] = chosen(more, size, b->widest[k]);
+    }
 }
 
 /* One step in every lane that has a run. */

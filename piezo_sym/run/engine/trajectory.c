@@ -80,6 +80,7 @@ typedef struct {
     double beyond; /* part of a step that may lie beyond the switch at its end, where no stage lies */
     real *rate, *side, *sums, *lost, *known;       /* at the beginning of a step; of the step before */
     real *after; /* branches: the length for a step after each switch; 0: not known */
+    real *widest; /* branches: the largest magnitude of each switching function so far */
     real *slack; /* branches: by how much time a step may end behind each switch; 0: not known */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
@@ -107,6 +108,11 @@ enum { TRIED = 32, AGAIN = 12 };
 #define LIKE_BEFORE 2.0
 /* A refused step is repeated up to where a path functional begins to yield, if before this part. */
 #define YIELDS 0.999
+/*
+ * A switching function that stays below this part of its largest magnitude is round-off, as at rest. Its sign
+ * does not count, unless laws jump.
+ */
+#define NO_SWITCH (MODEL(jumps) ? 0.0 : 1e-13)
 /* A switch within this fraction of a step from its end, or its beginning, counts as there. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
