@@ -116,8 +116,8 @@ static real MODEL(until_switch)(const MODEL(batch) *b, real h, mask where, real 
         }
         for (long order = 1; order < LAST; ++order) /* divided differences */
             for (long j = 0; j < LAST - order; ++j)
-                value[j] = (value[j + 1] - value[j]) / (at[j + order] - at[j]);
-        for (int again = 0; again < 4; ++again) { /* Newton's method */
+                value[j] = (value[j + 1] - value[j]) * (1.0 / (at[j + order] - at[j]));
+        for (int again = 0; again < 3; ++again) { /* Newton's method */
             real there = value[0], slope = zero;
             for (long j = 1; j < LAST; ++j) {
                 const real step = 1.0 + ahead - at[j];

@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from operator import attrgetter
 from typing import Any, final
 
 import numpy as np
@@ -95,6 +96,8 @@ class ParameterRecords:
         none = [("none", ctypes.c_char)]
         self._kind: Any = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
         self._dtype: np.dtype[Any] = np.dtype(self._kind)
+        numbers = [record.name for record in module.PARAMETERS if not record.bank]
+        self._numbers = attrgetter(*numbers) if numbers else lambda _: ()
         self._cached = lru_cache(maxsize=REMEMBERED)(lambda p: self._made([p]))
 
     def __call__(self, p: Any) -> Structures:
@@ -111,24 +114,29 @@ class ParameterRecords:
     def _made(self, parameters: Sequence[Any]) -> Structures:
         records: NDArray[Any] = np.zeros(len(parameters), self._dtype)
         kept: list[object] = [records]
+        numbers = [n for n, record in enumerate(self._module.PARAMETERS) if not record.bank]
+        columns = np.array([self._numbers(p) for p in parameters], dtype=float)
+        for n, values in zip(numbers, columns.reshape(len(parameters), -1).T, strict=True):
+            records[f"field_{n}"] = values
         for n, record in enumerate(self._module.PARAMETERS):
-            values = [getattr(p, record.name) for p in parameters]
             if record.bank:
                 count = lanes(parameters[0], record.bank)
-                if all(value is values[0] for value in values):
-                    rows = _spread(values[0], count)[None]
-                elif all(isinstance(value, float) for value in values):
-                    rows = np.repeat(np.array(values, dtype=float)[:, None], count, axis=1)
-                else:
-                    rows = np.array([_spread(value, count) for value in values])
+                rows = _rows([getattr(p, record.name) for p in parameters], count)
                 kept.append(rows)
                 records[f"field_{n}"] = addresses(rows)
-            else:
-                records[f"field_{n}"] = values
         for n, bank in enumerate(self._module.BANKS):
             records[f"count_{n}"] = lanes(parameters[0], bank)
         first = self._kind.from_address(records.ctypes.data)
         return Structures(first, addresses(records), tuple(kept))
+
+
+def _rows(values: Sequence[Any], count: int) -> FloatArray:
+    """Return the values of a parameter of a bank, (runs, lanes), or one row for all runs."""
+    if all(value is values[0] for value in values):
+        return _spread(values[0], count)[None]
+    if all(isinstance(value, float) for value in values):
+        return np.repeat(np.array(values, dtype=float)[:, None], count, axis=1)
+    return np.array([_spread(value, count) for value in values])
 
 
 def _spread(value: Any, count: int) -> FloatArray:
