@@ -144,7 +144,7 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
 }
 
 /* Let a lane repeat its step up to a switch, at a part of it, and a little more; 0 after too many times. */
-static int MODEL(cut)(const MODEL(batch) *b, int lane, double part)
+static int MODEL(cut)(MODEL(batch) *b, int lane, double part)
 {
     MODEL(lane) *l = b->lane + lane;
     if (++l->cuts > MOST_CUTS)
@@ -160,7 +160,7 @@ static int MODEL(cut)(const MODEL(batch) *b, int lane, double part)
 #define SHORT_CUT 1.5
 
 /* Whether a lane's step, which was to end at a switch and does not cross it, is not repeated up to there. */
-static int MODEL(reaches)(const MODEL(batch) *b, int lane)
+static int MODEL(reaches)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;
     const double begin = LANE(b->side, l->which, lane), end = LANE(b->end_side, l->which, lane);
