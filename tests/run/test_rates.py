@@ -127,8 +127,8 @@ void each(const double *x, double *out, long count)
     for (long n = 0; n + REAL_WIDTH <= count; n += REAL_WIDTH) {
         real v;
         memcpy(&v, x + n, sizeof v);
-        const real found[] = {exp_of(v), expm1_of(v), sin_of(v), cos_of(v), sqrt_of(v)};
-        for (long k = 0; k < 5; ++k)
+        const real found[] = {exp_of(v), expm1_of(v), sin_of(v), cos_of(v), sqrt_of(v), log_of(v)};
+        for (long k = 0; k < 6; ++k)
             memcpy(out + k * count + n, found + k, sizeof v);
     }
 }
@@ -137,7 +137,7 @@ void each(const double *x, double *out, long count)
 
 @pytest.fixture(scope="module")
 def in_vectors(tmp_path_factory):
-    """Return a function that gives exp, expm1, sin, cos and sqrt of x as vectors compute them."""
+    """Return a function for exp, expm1, sin, cos, sqrt and log of x as vectors compute them."""
     folder = tmp_path_factory.mktemp("built")
     (folder / "real.h").write_text(numbers_source("real.h"))
     (folder / "each.c").write_text(EXACT)
@@ -146,7 +146,7 @@ def in_vectors(tmp_path_factory):
 
     def call(x):
         x = np.ascontiguousarray(x)
-        out = np.full((5, x.size), np.nan)
+        out = np.full((6, x.size), np.nan)
         at = [ctypes.c_void_p(array.ctypes.data) for array in (x, out)]
         library.each(*at, ctypes.c_long(x.size))
         return out
@@ -195,7 +195,7 @@ def test_sines_and_roots_of_vectors_are_exact_to_two_units_of_the_last_place(in_
     far = [draw.uniform(-size, size, 400) for size in (1.0, 7.0, 1e3, 1e6, 1e9, 1e300)]
     tiny = 10.0 ** draw.uniform(-320, 0, 400)
     x = np.concatenate([near.ravel(), *far, tiny, -tiny])
-    _, _, *found, roots = in_vectors(x)
+    found, roots = in_vectors(x)[2:4], in_vectors(x)[4]
     with mp.workdps(400):
         exact = [[f(mp.mpf(float(value))) for value in x] for f in (mp.sin, mp.cos)]
     for one, other in zip(found, exact, strict=True):
@@ -205,6 +205,21 @@ def test_sines_and_roots_of_vectors_are_exact_to_two_units_of_the_last_place(in_
     with np.errstate(invalid="ignore"):
         ends_by_numpy = np.sin([np.inf, -np.inf, np.nan, 0.0, -0.0, 1e308, -1e308, 5e-324])
     assert np.allclose(ends[2], ends_by_numpy, rtol=1e-15, atol=0, equal_nan=True)
+
+
+def test_logarithms_of_vectors_are_exact_to_two_units_of_the_last_place(in_vectors):
+    draw = np.random.default_rng(2)
+    near = (
+        np.sqrt(0.5) * 2.0 ** np.arange(-40, 40)[:, None] * (1 + draw.uniform(-1e-9, 1e-9, (80, 8)))
+    )
+    wide = [10.0 ** draw.uniform(-size, size, 800) for size in (1e-9, 1e-3, 1.0, 300.0)]
+    ends = [5e-324, 2.0**-1022, np.finfo(float).max, 1.0, np.inf, 0.0, -1.0, np.nan]
+    x = np.concatenate([near.ravel(), *wide, ends])
+    found = in_vectors(x)[5]
+    with mp.workdps(40):
+        exact = [mp.log(mp.mpf(float(value))) for value in x[:-4]]
+    assert ulps(found[:-4], exact) <= MOST_ULPS
+    assert np.array_equal(found[-4:], [np.inf, -np.inf, np.nan, np.nan], equal_nan=True)
 
 
 def test_no_name_of_a_spec_is_one_of_the_vectors():

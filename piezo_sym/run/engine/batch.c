@@ -199,7 +199,7 @@ static int MODEL(go_on_surveying)(MODEL(batch) *b, int lane, double longest, int
     }
     l->known = l->h;
     l->t = l->t + l->h < stop - 1e-9 * l->h ? l->t + l->h : stop;
-    l->h = fmin(2.0 * l->h, longest);
+    l->h = MODEL(lesser)(2.0 * l->h, longest);
     if (l->t >= stop && l->t < b->stop) {
         MODEL(enter)(b->waves, ++l->segment, b->m.inputs, lane);
         l->known = 0.0;
@@ -223,7 +223,7 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
             MODEL(lane) *l = b->lane + lane;
             if (!IN(going, lane))
                 continue;
-            l->h = fmin(l->h, MODEL(until)(b, l) - l->t);
+            l->h = MODEL(lesser)(l->h, MODEL(until)(b, l) - l->t);
             LANE(&h, 0, lane) = l->h;
         }
         MODEL(inputs_at)(b, going, MODEL(now)(b) + 0.5 * h, b->some_inputs);

@@ -47,7 +47,7 @@ static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
 /* The first sign change of switching function k in a lane, by its values on its branch. */
 static MODEL(crossing) MODEL(sign_change)(long k, const real *values, int lane)
 {
-    double at = 0.0, value = fmax(LANE(values, 0, lane), 0.0);
+    double at = 0.0, value = MODEL(greater)(LANE(values, 0, lane), 0.0);
     for (long i = 1; i < LOOKS; ++i) {
         const long stage = i / PARTS, part = i % PARTS;
         const double next = part ? between[stage * (PARTS - 1) + part - 1]
@@ -153,7 +153,7 @@ static double MODEL(over_switch)(const MODEL(batch) *b, int lane, long which, do
     const double slack = LANE(b->slack, which, lane);
     if (b->fixed > 0.0 || !(slack > 0.0))
         return most;
-    return fmin(fmax(0.5 * slack / length, AT_END), 0.5 * BEHIND);
+    return MODEL(lesser)(MODEL(greater)(0.5 * slack / length, AT_END), 0.5 * BEHIND);
 }
 
 /*

@@ -138,6 +138,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
 static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     const real worst = any(t->planned) ? MODEL(error)(b, t->h) : (real)zero;
+    const real longer = MODEL(growth)(b, worst);
     const mask across = MODEL(crossed)(b, t->steps & t->found & none_of(b->m.over), t->crossing);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         MODEL(lane) *l = b->lane + lane;
@@ -157,9 +158,9 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
         l->behind = 0;
         if (l->phase == STEP && b->fixed == 0.0) {
             const double error = LANE(&worst, 0, lane);
-            l->longer = MODEL(growth)(error, IN(b->m.over, lane) != 0);
+            l->longer = LANE(&longer, 0, lane);
             if (!(error <= 1.0)) {
-                double part = fmax(0.1, l->refused > 1 ? fmin(l->longer, 0.5) : l->longer);
+                double part = MODEL(greater)(0.1, l->refused > 1 ? MODEL(lesser)(l->longer, 0.5) : l->longer);
 #if defined(PATHS) /* most of the error may come from it */
                 const double first = LANE(b->m.yield, EARLIEST, lane);
                 if (first < YIELDS && first > 0.1 * part)

@@ -100,10 +100,11 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long 
         }
         for (long j = 0; j < STAGES; ++j)
             most = largest_of(size_of(rates[j * n + k] - mean), most);
-        const real smooth = least(size_of(last) / most, wide(1.0));
+        const real per_most = 1.0 / most;
+        const real smooth = least(size_of(last) * per_most, wide(1.0));
         const real next = STAGES > 2 ? (real)(series * last * LIKE_THE_LAST(smooth)) : (real)zero;
         const real misfit = further(further(low, high), next);
-        const real share = least(size_of(misfit) / most, wide(1.0));
+        const real share = least(size_of(misfit) * per_most, wide(1.0));
         const real slow = MODEL(slow_part)(low, high, last, before);
         /* the rate at an end beyond a switch may have no value */
         const real more = chosen(slow == slow, series * slow, zero);
@@ -146,15 +147,15 @@ static real MODEL(error)(const MODEL(batch) *b, real h)
     real pulled = zero, slow = 1e-300 + zero, worst = zero;
     for (long k = 0; k < m->n; ++k) {
         const real scale = largest_of(size_of(m->x[k]), size_of(m->end[k]));
-        const real size = 1e-300 + largest_of(m->largest[k], scale);
+        const real per_size = 1.0 / (1e-300 + largest_of(m->largest[k], scale));
         const real misfit = size_of(b->some_rate[k]), error = size_of(once[k]);
         const real change = size_of(b->some_rate[k] - once[k]);
         const real first = misfit / (error + 1e-300), second = error / (size_of(twice[k]) + 1e-300);
         const real reduced = least(first, second);
         const mask is_fast = reduced > REDUCED;
-        b->some_rate[k] = chosen(is_fast, (reduced - 1.0) / filter, zero);
-        once[k] = error / size;
-        pulled = largest_of(chosen(is_fast, zero, change / size), pulled);
+        b->some_rate[k] = chosen(is_fast, (reduced - 1.0) * (1.0 / filter), zero);
+        once[k] = error * per_size;
+        pulled = largest_of(chosen(is_fast, zero, change * per_size), pulled);
         slow = largest_of(chosen(is_fast, zero, once[k]), slow);
     }
     const real pull = pulled / (filter * slow);

@@ -5,8 +5,9 @@
 
 /* The step length is proportional to about this power of the error where steps contain kinks. */
 #define OVER_KINKS (-1.0 / 3.0)
-/* Safety factor: the next step is this times the one whose estimated error equals the tolerance. */
-#define PART_OF(over) ((over) ? 0.9 : 0.82)
+/* Safety factors: the next step is this times the one whose estimated error equals the tolerance. */
+#define PART 0.82
+#define PART_OVER 0.9
 /* An error may be small by chance: a step is at most this much longer than the last one allowed. */
 #define SUDDEN 1.5
 /* Steps are this much shorter than one that could not be solved, and less so with each of them. */
@@ -23,20 +24,21 @@ enum { MOST_AIMS = 2 };
 /* The length after a switch grows by no more than this factor from one time to the next. */
 #define MORE_AFTER 1.5
 
-/* How much longer the next step may be, by the error of this one. */
-static double MODEL(growth)(double error, int over)
+/* How much longer the next steps may be, by the errors of these. */
+static real MODEL(growth)(const MODEL(batch) *b, real error)
 {
-    if (!(error > 0.0))
-        return error == 0.0 ? 8.0 : 0.25;
-    return PART_OF(over) * pow(error, over ? OVER_KINKS : -0.5 / STAGES);
+    const mask over = b->m.over, positive = error > 0.0, none = error == 0.0;
+    const real power = chosen(over, wide(OVER_KINKS), wide(-0.5 / STAGES));
+    const real more = chosen(over, wide(PART_OVER), wide(PART)) * exp_of(power * log_of(error));
+    return chosen(positive, more, chosen(none, wide(8.0), wide(0.25)));
 }
 
 /* Note how long a step may be that begins at the switch at which this one began. */
 static void MODEL(keep_after)(MODEL(batch) *b, const MODEL(lane) *l, int lane, double most)
 {
     double *const after = &LANE(b->after, l->turned, lane);
-    const double allowed = l->whole * fmin(l->longer, most);
-    *after = *after > 0.0 ? fmin(allowed, MORE_AFTER * *after) : allowed;
+    const double allowed = l->whole * MODEL(lesser)(l->longer, most);
+    *after = *after > 0.0 ? MODEL(lesser)(allowed, MORE_AFTER * *after) : allowed;
 }
 
 /*
@@ -50,19 +52,19 @@ static void MODEL(next_length)(MODEL(batch) *b, MODEL(lane) *l, int lane, double
     if (l->turned >= 0 && l->aimed == 0.0)
         MODEL(keep_after)(b, l, lane, most);
     if (switches) {
-        const double after = LANE(b->after, l->which, lane), whole = fmax(l->whole, l->aimed);
-        l->h = after > 0.0 ? after : fmin(l->longer, AFTER_SWITCH) * whole;
+        const double after = LANE(b->after, l->which, lane), whole = MODEL(greater)(l->whole, l->aimed);
+        l->h = after > 0.0 ? after : MODEL(lesser)(l->longer, AFTER_SWITCH) * whole;
         l->steady = HUGE_VAL;
     } else {
         const double allowed = l->step * l->longer;
         if (!last) {
-            l->h = fmin(l->step * fmin(l->longer, most), SUDDEN * l->steady);
-            l->steady = fmax(allowed, missed);
+            l->h = MODEL(lesser)(l->step * MODEL(lesser)(l->longer, most), SUDDEN * l->steady);
+            l->steady = MODEL(greater)(allowed, missed);
         }
-        l->h = fmax(l->h, fmin(allowed, missed));
+        l->h = MODEL(greater)(l->h, MODEL(lesser)(allowed, missed));
     }
     l->turned = l->which;
-    l->h = fmin(l->h, BELOW_HARD * l->hard);
+    l->h = MODEL(lesser)(l->h, BELOW_HARD * l->hard);
     l->hard *= LESS_HARD;
     const double over = l->goal < 0 ? 0.0 : MODEL(over_switch)(b, lane, l->goal, l->ahead, OVER_SWITCH);
     const double to_switch = l->ahead * (1.0 + over);

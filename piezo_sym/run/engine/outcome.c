@@ -123,7 +123,7 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
     l->phase = STEP;
     if (b->fixed > 0.0) {
         l->halved = l->h < b->fixed ? l->halved : 0;
-        l->h = fmin(b->fixed, 2.0 * l->h);
+        l->h = MODEL(lesser)(b->fixed, 2.0 * l->h);
         l->known = l->which >= 0 ? 0.0 : l->known;
     } else
         MODEL(next_length)(b, l, lane, most);
@@ -168,7 +168,7 @@ static int MODEL(reaches)(MODEL(batch) *b, int lane)
         return 1;
     const double longest = (MODEL(until)(b, l) - l->t) / l->length;
     const double part = 1.0 + (l->goal == l->which ? l->ahead / l->length : 0.0);
-    if (part > 1.0 && part < fmin(longest, l->phase == CUT ? SHORT_CUT : SHORT))
+    if (part > 1.0 && part < MODEL(lesser)(longest, l->phase == CUT ? SHORT_CUT : SHORT))
         return !MODEL(cut)(b, lane, part);
     l->which = l->phase == CUT ? l->which : -1;
     return 1;

@@ -139,6 +139,29 @@ static inline real expm1_of(real d)
     return chosen(d > 709.0, wide(HUGE_VAL), scale * e + (scale - 1.0));
 }
 
+/*
+ * log(a) = k log(2) + log(m) with m from sqrt(1/2) to sqrt(2), by the series of log((1 + s)/(1 - s)),
+ * |s| < 0.172. Of numbers that are no usual ones, zero to infinity among them, the library knows it.
+ */
+static inline real log_of(real a)
+{
+    const pattern bits = bits_of(a) - 0x3fe6a09e667f3bcd, kept = bits & 0x000fffffffffffff;
+    const real k = real_of((bits >> 52) + 0x4338000000000000) - 0x1.8p52;
+    const real e = k - chosen(k > 1024.0, wide(4096.0), zero);
+    const real m = real_of(kept + 0x3fe6a09e667f3bcd);
+    const real s = (m - 1.0) / (m + 1.0), s2 = s * s, s4 = s2 * s2, s8 = s4 * s4;
+    const real from_3 = (2.0 / 3.0 + s2 * (2.0 / 5.0)) + s4 * (2.0 / 7.0 + s2 * (2.0 / 9.0));
+    const real from_11 = (2.0 / 11.0 + s2 * (2.0 / 13.0)) + s4 * (2.0 / 15.0 + s2 * (2.0 / 17.0));
+    const real from_19 = 2.0 / 19.0 + s2 * (2.0 / 21.0);
+    const real small = s * s2 * (from_3 + s8 * (from_11 + s8 * from_19)) + e * 0x1.ef35793c76730p-45;
+    real found = e * 0x1.62e42fefa3800p-1 + (2.0 * s + small);
+    const mask unusual = none_of((a >= 0x1p-1022) & (a < HUGE_VAL));
+    for (int lane = 0; lane < REAL_WIDTH && any(unusual); ++lane)
+        if (IN(unusual, lane))
+            LANE(&found, 0, lane) = log(LANE(&a, 0, lane));
+    return found;
+}
+
 static inline real tanh_of(real z)
 {
     const real e = expm1_of(-2.0 * size_of(z)), found = -e / (e + 2.0);

@@ -120,7 +120,7 @@ enum { TRIED = 32, AGAIN = 12 };
  * A step may end somewhat beyond its switch, where no stage lies: BEHIND is the longest such part. That
  * adds at most KINK_ERROR of the tolerance to its error, by the rates on both sides.
  */
-#define BEHIND fmin(0.05, 0.99 * (1.0 - stage_at[STAGES - 1]))
+#define BEHIND (0.99 * (1.0 - stage_at[STAGES - 1]) < 0.05 ? 0.99 * (1.0 - stage_at[STAGES - 1]) : 0.05)
 #define KINK_ERROR 0.1
 /*
  * How far a step goes beyond a switch of which that is not known yet, and a fixed one. A kink adds an error
@@ -149,6 +149,17 @@ static real MODEL(now)(const MODEL(batch) *b)
     for (int lane = 0; lane < REAL_WIDTH; ++lane)
         LANE(&t, 0, lane) = b->lane[lane].t;
     return t;
+}
+
+/* As fmin and fmax, but no calls, and without their answer to nan. */
+static inline double MODEL(lesser)(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double MODEL(greater)(double a, double b)
+{
+    return a > b ? a : b;
 }
 
 /* Rates, switching functions and margins at a point; `weight` as in newton.c. */
@@ -189,7 +200,7 @@ static void MODEL(rates_here)(MODEL(batch) *b, mask where, mask choosing)
 /* The next break of the inputs, or the end of the run. */
 static double MODEL(until)(const MODEL(batch) *b, const MODEL(lane) *l)
 {
-    return fmin(l->segment->stop, b->stop);
+    return MODEL(lesser)(l->segment->stop, b->stop);
 }
 
 /* Where the accepted step of a lane ends. */
@@ -227,7 +238,7 @@ static double MODEL(target)(const MODEL(batch) *b, const MODEL(lane) *l)
 /* Plan a lane's next step: its length. */
 static void MODEL(plan)(const MODEL(batch) *b, MODEL(lane) *l)
 {
-    double until = MODEL(until)(b, l), longest = fmin(l->h, b->longest);
+    double until = MODEL(until)(b, l), longest = MODEL(lesser)(l->h, b->longest);
     if (l->phase == STEP) {
         if (b->fixed > 0.0) {
             if (l->run->sample < b->samples && b->times[l->run->sample] < until)
