@@ -83,8 +83,8 @@ def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType
 
 def _of_file(path: Path, text: str, stages: int | None) -> ModuleType:
     """Return the module of a spec file; the spec's types are loaded only in doubt."""
-    content = data(text)
-    if module := _known(path, content):
+    content = _data(text)
+    if module := _known(path, content, text):
         return module
     from piezo_sym.verification.process import started
 
@@ -119,12 +119,23 @@ def _check_derivation(model: Model) -> None:
     derive(model)
 
 
-def _known(path: Path, content: dict[str, Any]) -> ModuleType | None:
+@lru_cache(maxsize=64)
+def _data(text: str) -> dict[str, Any]:
+    """Return the data of a spec's text, as for the run before; nobody changes them."""
+    return data(text)
+
+
+@lru_cache(maxsize=64)
+def _hash(text: str) -> str:
+    return spec_hash(_data(text))
+
+
+def _known(path: Path, content: dict[str, Any], text: str) -> ModuleType | None:
     """Return the module of a spec, if loading would not refuse what it says: see `_remember`."""
     tables = all(isinstance(table, dict) for table in content.values())
     if (tables and path.parent == MODELS) or _was_loaded(content):  # tests load those that it has
         name = str(content.get("model", {}).get("name"))
-        if module := _available(name, spec_hash(content)):
+        if module := _available(name, _hash(text)):
             return module
     return _refilled(content) if _was_loaded(without_values(content)) else None
 

@@ -1077,19 +1077,20 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         else if (iteration > 2)
             renewed = nowhere;
         const mask switched = MODEL(gaps)(m, h, going);
-        const mask smaller = worst < before, lost = none_of(worst < 1e300);
+        const mask smaller = (worst < before) & none_of(renewed), lost = none_of(worst < 1e300);
         const mask near = smaller & (worst < NEAR);
         const real left = worst / (before + NO_SIZE);
         real residual;
         const mask solved = MODEL(solves)(m, h, &residual);
-        mask good = (worst <= 4.0) | (near & (worst * largest_of(left, left_before) <= 4.0));
+        mask good = near & (worst * largest_of(left, left_before) <= 4.0);
+        good |= (worst <= 4.0) & none_of(renewed);
         if (iteration > 1) { /* stagnation: round-off, or no root */
-            const mask stays = (worst > m->stays * before) & none_of(good);
+            const mask stays = (worst > m->stays * before) & none_of(good | renewed);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
             if (iteration > m->late)
                 going &= none_of(stays & none_of(good));
         }
-        good &= solved & none_of(lost | renewed);
+        good &= solved & none_of(lost);
         const mask enough = m->sketch & (worst < m->enough) & going & none_of(good | lost);
         if (any(enough)) {
             m->sketched |= enough & MODEL(strayed)(m);
@@ -1226,9 +1227,12 @@ static void MODEL(find_noise)(const MODEL(block) *m, real *noise)
 /* The lanes in which FINE nodes are too few: the step is too long. */
 static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
 {
+    const mask bad = m->fine & MODEL(rough_parts)(m, h, &MODEL(many), NULL);
+    if (!any(bad))
+        return bad;
     real *const noise = m->gap; /* no longer needed by Newton's method */
     MODEL(find_noise)(m, noise);
-    return m->fine & MODEL(rough_parts)(m, h, &MODEL(many), noise);
+    return bad & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
 
 #if !defined(COSTATES) /* else see residual.c */
