@@ -53,7 +53,7 @@ def pytest_collection_modifyitems(items):
 
 
 #: Models of which tests take so many steps that some optimization pays.
-LONG_RUNS = ("piezo_stack", "stack_bouc_wen", "led", "rubbing")
+LONG_RUNS = ("piezo_stack", "stack_bouc_wen", "stack_maxwell", "led", "rubbing")
 
 
 @pytest.fixture(scope="session")
