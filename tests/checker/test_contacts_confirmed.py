@@ -48,7 +48,7 @@ def rows(text):
     return {(row.id, row.element): row for row in verify(derive(parse(text))).rows}
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("law", FORCES)
 @pytest.mark.parametrize("domain", [">= 1", "> 0", ">= 0.5"])
 def test_a_force_that_is_a_power_is_proved_and_confirmed(law, domain):

@@ -228,7 +228,7 @@ def test_no_condition_is_shown_that_domain_cannot_have(temperature, known):
     assert "in [domain]" not in row.reason
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("text", "said"),
     [
