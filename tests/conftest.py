@@ -16,7 +16,7 @@ import pytest
 from hypothesis import settings
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
-settings.register_profile("quick", settings.get_profile("repeatable"), max_examples=40)
+settings.register_profile("quick", settings.get_profile("repeatable"), max_examples=25)
 
 # Modules and tests stay: to look for garbage among them as often as Python does takes long.
 gc.set_threshold(50_000, 20, 20)
@@ -53,7 +53,7 @@ def pytest_collection_modifyitems(items):
 
 
 #: Models of which tests take so many steps that some optimization pays.
-LONG_RUNS = ("piezo_stack", "stack_bouc_wen", "led", "rubbing")
+LONG_RUNS = ("piezo_stack", "stack_bouc_wen", "stack_maxwell", "led", "rubbing")
 
 
 @pytest.fixture(scope="session")

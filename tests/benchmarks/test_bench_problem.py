@@ -50,7 +50,7 @@ def at(expressions, problem, x, **more):
     return np.array([float(e.subs({**known, **more}).evalf(25)) for e in expressions])
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(4)
 @pytest.mark.parametrize("number", range(4))
 def test_explicit_rates_are_the_modules(problem, path, number):
     x, u = drawn(problem, path, number)
@@ -67,7 +67,7 @@ def test_scaled_rates_are_those_of_scaled_states(problem, path):
     np.testing.assert_allclose(found * scale, at(problem.rates, problem, x), rtol=1e-9, atol=1e-9)
 
 
-@pytest.mark.some(30)
+@pytest.mark.some(12)
 @pytest.mark.parametrize("number", range(4))
 def test_switches_choose_what_pieces_say(problem, path, number):
     smooth = switched(problem.rates)

@@ -205,14 +205,6 @@ def test_a_copy_with_other_tables_is_another_model(model):
     assert copy.flatten().domain.assume == ()
 
 
-def test_a_spec_from_a_pipe_is_read_once(tmp_path):
-    command = f"cat {ROOT}/piezo_sym/models/oscillator.toml | {sys.executable} -m piezo_sym"
-    words = ["sh", "-c", f"{command} verify /dev/stdin"]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-
-
 def test_the_cache_may_be_read_only(model, cache):
     cache.parent.mkdir()
     cache.write_text("no folder")

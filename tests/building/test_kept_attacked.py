@@ -89,7 +89,7 @@ def test_a_cache_is_never_in_the_working_folder(name):
 def test_a_proof_is_a_proof_for_python_without_docstrings():
     code = """
 from piezo_sym import simulate
-print(simulate("piezo_stack", duration=1e-4, times=2).attrs["proofs"])
+print(simulate("oscillator", duration=1e-4, times=2).attrs["proofs"])
 """
     assert changed_session(code, PYTHONOPTIMIZE="2").endswith("program PROVED\n")
 

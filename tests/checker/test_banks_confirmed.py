@@ -65,7 +65,7 @@ def test_banks_are_confirmed(cells):
     assert refused(text, stated(text)) == {}
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(3)
 @pytest.mark.parametrize(
     ("cells", "old", "new"),
     [

@@ -33,7 +33,7 @@ CONTACTS = (
 )
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize(("law", "old", "new"), CONTACTS)
 def test_a_conductance_with_a_root_or_a_limit_is_confirmed(law, old, new):
     text = CONTACT.replace("LAW", law)
@@ -76,6 +76,7 @@ SPRINGS = (
 )
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(("field", "name", "old", "new"), SPRINGS)
 def test_kinks_at_a_product_with_the_state_are_confirmed(field, name, old, new):
     text = TEXT.replace('force = "LAW"', field)
@@ -99,6 +100,7 @@ def test_a_force_that_is_zero_by_zero_at_rest_is_confirmed(force):
     assert refused(text, proofs).keys() == {("skew", ""), ("energy", "")}
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     "force",
     ["F_0*cosh(q/r)*(q/r)/(q/r)", "k*q*(q - s)/(q - s)", "k*max(q + r, 0)*q/q", "k*q*s/s"],

@@ -160,6 +160,7 @@ def test_cases_have_to_cover_the_domain():
     )
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("power", ["2.72", "2.75"])
 def test_a_function_that_gives_power_has_no_certificate(power):
     law = f"F_1*v/v_1*(exp(v/v_1) - {power}*v/v_1)"

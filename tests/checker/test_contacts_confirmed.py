@@ -48,7 +48,7 @@ def rows(text):
     return {(row.id, row.element): row for row in verify(derive(parse(text))).rows}
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("law", FORCES)
 @pytest.mark.parametrize("domain", [">= 1", "> 0", ">= 0.5"])
 def test_a_force_that_is_a_power_is_proved_and_confirmed(law, domain):
@@ -72,7 +72,7 @@ def test_its_energy_is_the_integral_of_the_force(law, n):
         assert rise == pytest.approx(1e4 * quad(FORCES[law], a, b, args=(n,), points=[0.0])[0])
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("law", "domain", "values"),
     [

@@ -163,19 +163,20 @@ def well(energy):
     )
 
 
+@pytest.mark.parametrize("seed", [3, *(pytest.param(n, marks=pytest.mark.long) for n in (1, 2))])
 @pytest.mark.parametrize(
     "energy", ["k*q**4/4", pytest.param("k*log(1 + q**2)", marks=pytest.mark.long)]
 )
-def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
+def test_very_long_steps_close_their_balances_or_are_halved(energy, seed, tmp_path):
     """Newton's method may end at what is no root, and quadrature miss a well within a step.
 
     A change that stagnates is accepted up to 1e-12 of a state (MOST_NOISE), in each of 20 to 600
     steps.
     """
     module = well(energy).module(tmp_path)
-    draw = np.random.default_rng(1)
+    draw = np.random.default_rng(seed)
     ran = 0
-    for _ in range(15):
+    for _ in range(5):
         h, k, p = 10.0 ** draw.uniform((-1, -1, -1), (1.5, 5, 3))
         order = int(draw.choice([2, 4, 6]))
         how = {"step": h, "order": order, "parameters": {"k": k}, "initial": {"p": p}}
@@ -185,7 +186,7 @@ def test_very_long_steps_close_their_balances_or_are_halved(energy, tmp_path):
             continue
         ran += 1
         assert np.abs(run.energy_residual).max() <= 1e-10 * run.energy.max()
-    assert ran > 10
+    assert ran >= 3
 
 
 def test_a_force_that_goes_to_zero_is_no_reason_to_halve_steps(tmp_path):

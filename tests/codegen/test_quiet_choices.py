@@ -52,6 +52,7 @@ ZEROS = {
 }
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("law", ZEROS)
 @pytest.mark.parametrize("z", [[-2.0, 0.3, 1.0], 0.5])
 def test_a_parameter_that_is_zero_is_divided_by_only_where_that_is_chosen(law, z):

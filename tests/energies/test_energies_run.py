@@ -58,7 +58,7 @@ def test_runs_agree_with_rates_by_hand_and_close_both_balances(name, way, bound,
     assert float(np.abs(run.entropy_residual).max()) <= 1e-12 * entropy
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", DEVICES)
 def test_all_of_it_is_proved(name):
     report = process.examined(parse(DEVICES[name][0]))

@@ -47,7 +47,7 @@ def unproved(rows):
     return {row.id for row in rows if row.required and row.verdict is not Verdict.PROVED}
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("law", GOOD)
 def test_it_is_proved_and_has_the_energy_of_quadrature(law):
     iphs = derive(parse(TEXT.replace("LAW", law)))
@@ -58,7 +58,7 @@ def test_it_is_proved_and_has_the_energy_of_quadrature(law):
 BAD = [*(("energy", text) for text in BAD_ENERGIES), *(("force", text) for text in BAD_LAWS)]
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("field", "law"),
     [pytest.param(*bad, marks=pytest.mark.long if n % 4 else ()) for n, bad in enumerate(BAD)],

@@ -120,6 +120,7 @@ def test_a_magnet_that_was_made_of_the_advice_is_proved():
     assert verify(derive(parse(followed(text, said)))).proved
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("old", "new", "needed"),
     [

@@ -85,7 +85,7 @@ def of_names(law, *assume):
     return (*(c for c in POSITIVE if c.split()[0] in law), *assume)
 
 
-@pytest.mark.some(5)
+@pytest.mark.some(3)
 @pytest.mark.parametrize("row", ["passive", "sigma"])
 @pytest.mark.parametrize("name", ONCE_PROVED)
 def test_what_was_wrongly_proved_is_caught(tmp_path, name, row):
@@ -100,7 +100,7 @@ def test_what_was_wrongly_proved_is_caught(tmp_path, name, row):
         assert shown in str(caught.value)
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", WEDGES)
 def test_a_law_that_is_active_on_a_small_set_is_caught(tmp_path, name):
     law = WEDGES[name]

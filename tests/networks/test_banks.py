@@ -249,7 +249,7 @@ FALSE = [
 ]
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("cell", [ABSORBER, KELVIN], ids=["parallel", "series"])
 @pytest.mark.parametrize(("law", "assume"), FALSE)
 def test_no_false_claim_of_a_bank_is_proved(law, assume, cell):

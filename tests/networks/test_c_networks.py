@@ -102,7 +102,7 @@ def check_start(module, compiled, place):
     assert np.all(np.diff(sums[:, -2:], axis=0) >= 0)
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(4)
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_specs(path):
     model = load(path)
@@ -114,7 +114,7 @@ def test_specs(path):
 
 
 def test_networks():
-    assert len(explore(4, check)) >= 4
+    assert len(explore(2, check)) >= 2
 
 
 @pytest.mark.long

@@ -275,6 +275,7 @@ def lever():
     return a / n, k / n**2 + k_l, g * 1e-3, k_e
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(("V", "F", "reach"), [(50.0, 0, 0), (110.0, -20, 0), (150.0, 0, 1)])
 def test_lever_moves_its_load_as_the_stiffnesses_say(V, F, reach):
     given, (a, k, g, k_e) = {"V": V, "F": F}, lever()

@@ -75,7 +75,7 @@ def compared(request):
     return Compared(model, module_of(model))
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("above", ABOVE)
 def test_right_above_the_reference_temperature(compared, above):
     for seed in range(3):
@@ -172,7 +172,7 @@ def check(spec, seed):
 
 
 def test_edges_of_networks():
-    assert sum(explore(2, check)) >= 6
+    assert sum(explore(1, check)) >= 3
 
 
 AT_ITS_REFERENCE = """

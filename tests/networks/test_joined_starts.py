@@ -75,6 +75,7 @@ def test_a_joined_state_takes_a_condition():
     verify(iphs).raise_if_not_proved()
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("elements", "state", "joined"),
     [

@@ -101,7 +101,7 @@ def reference(request):
     return model, module, simulate(module, rtol=1e-12, **SHORT)
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"rtol": 1e-9}, {"step": 1e-6}], ids=str)
 def test_specs(reference, accuracy):
     model, module, wanted = reference
@@ -165,7 +165,7 @@ def test_a_run_never_takes_entropy_even_of_a_model_that_would(accuracy, tmp_path
 
 
 def test_networks():
-    assert explore(2, check).count(FINISHED) >= 1
+    assert explore(1, check, part=2) == [FINISHED]  # one that is small
 
 
 @pytest.mark.long

@@ -270,7 +270,7 @@ def test_each_element_keeps_its_costate_and_its_energy(case):
     assert sp.simplify(together - stored.xreplace(left)) == 0
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 def test_proved(case):
     _, _, iphs = case
     report = process.examined(iphs.model)

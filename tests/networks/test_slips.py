@@ -116,6 +116,7 @@ GOES_BY_MORE = {
 }
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("law", GOES_BY_MORE)
 def test_slips_that_depend_on_the_rate_are_refuted(law):
     row = rows_of(TEXT.replace(WEN, law))["rate-independent", "wen"]

@@ -93,7 +93,7 @@ def balanced(run):
     assert np.diff(run.heat_stop.values, axis=0).min() >= 0
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", ["led", "mass", "coil", "charged"])
 def test_every_row_is_proved(name):
     rows = {(row.id, row.element): row.verdict for row in process.examined(model(name)).rows}

@@ -70,7 +70,7 @@ def by_hand(t, x):
         drop = rho / (T - T_0) * (np.maximum(i - i_0, 0) + np.minimum(i + i_0, 0))
         force += alpha * Q / C - k * q - d * v
         heat = drop @ i + d * v * v
-        supply = 60 * np.sin(2 * np.pi * 100 * t)
+        supply = 60 * np.sin(2 * np.pi * 250 * t)
         rates += [
             v,
             i.sum() - alpha * v,
@@ -83,8 +83,8 @@ def by_hand(t, x):
 def test_a_run_is_that_of_equations_typed_by_hand(folder):
     start = [0, 0, 0, 0, 5 * np.log(300 / 296.15)] * 2 + [0]
     kept = {"rtol": 1e-10, "atol": 1e-14, "method": "Radau"}
-    reference = solve_ivp(by_hand, (0, 0.005), start, **kept).y[:, -1]
-    ds = simulate(folder / "two.toml", inputs={"V": sine(60, 100)}, duration=0.005, rtol=1e-9)
+    reference = solve_ivp(by_hand, (0, 0.002), start, **kept).y[:, -1]
+    ds = simulate(folder / "two.toml", inputs={"V": sine(60, 250)}, duration=0.002, rtol=1e-9)
     last = ds.isel(time=-1)
     found = np.concatenate([np.atleast_1d(last[name]) for name in (*STATES, "p")])
     scale = np.abs(reference).clip(1e-6)

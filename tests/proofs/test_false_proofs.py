@@ -107,6 +107,7 @@ def required(text):
     return {(row.id, row.element): row.verdict.value for row in report.rows if row.required}
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize("name", DAMPED)
 def test_a_damper_that_is_active_at_the_values_given_is_not_proved(name):
     parameters, domain, elements, force = DAMPED[name]

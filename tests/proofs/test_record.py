@@ -116,7 +116,7 @@ def test_what_intervals_prove_is_said_and_not_asked():
     assert by_z3(written) == by_cvc5(written)
 
 
-@pytest.mark.some(12)
+@pytest.mark.some(6)
 @pytest.mark.parametrize("spec", [None, *SPECS], ids=lambda s: s.stem if s else "committed")
 def test_the_json_has_a_true_entry_a_row(spec):
     name = spec or "piezo_stack"

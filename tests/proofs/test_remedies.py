@@ -105,6 +105,7 @@ def test_the_conditions_that_mend_a_row_do(name):
     assert not unproved(text)
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("old", "new", "left_out"),
     [
@@ -135,14 +136,14 @@ def shown(store, old, new):
     return re.search(said, str(caught.value)).groups()
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize(("store", "old", "new"), WARM)
 def test_the_storage_that_is_shown_is_proved(store, old, new):
     element, conditions = shown(store, old, new)
     assert not unproved(assuming(without(store, "body") + element, conditions))
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(("store", "old", "new"), WARM[::2])
 def test_without_its_last_condition_it_is_not(store, old, new):
     element, conditions = shown(store, old, new)
@@ -227,6 +228,7 @@ def test_no_condition_is_shown_that_domain_cannot_have(temperature, known):
     assert "in [domain]" not in row.reason
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("text", "said"),
     [

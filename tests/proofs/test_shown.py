@@ -34,6 +34,7 @@ def rows(law, *domain):
     return {r.id: r for r in report.rows if r.element in {"damper", ""}}
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("more", [(), ("n > 0",), ("n < 5",)])
 def test_a_power_is_refuted_where_mathematics_has_no_value(more):
     """At n = 1, which was shown, the law is d*v: only a negative power of zero has no value."""
@@ -66,6 +67,7 @@ states = {{ S = {{ rate = "entropy" }} }}
 HOT = SPEC.replace("[domain]", 'b = {{ value = 1.0, unit = "1" }}\n[domain]').replace(BODY, STORE)
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("energy", "domain", "said", "less"),
     [
@@ -94,6 +96,7 @@ F_c = {{ value = 1.0, unit = "N" }}
 DAMPER = SPEC.replace("[domain]", MORE)
 
 
+@pytest.mark.some(3)
 @pytest.mark.parametrize(
     ("law", "said", "less"),
     [
@@ -140,6 +143,7 @@ heats = "body"
 mass"""
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("law", "said"),
     [

@@ -56,7 +56,7 @@ def test_a_monotone_table_through_the_origin_is_proved(law):
         assert found[name].verdict is Verdict.PROVED, found[name].reason
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("law", "without", "more"),
     [

@@ -68,7 +68,7 @@ def test_a_short_step_goes_where_the_rates_lead(spec, stages):
     assert error <= 1e-13 * np.abs(x).max() + (1e-6 if stages == 1 else 1e-9) * moved_by
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     "spec", [s for s in ALL if Path(s).stem != "dry_friction"], ids=lambda spec: Path(spec).stem
 )
@@ -91,7 +91,7 @@ def ends(spec, duration, counts, stages, options):
         yield steps.x
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("stages", [pytest.param(1, marks=pytest.mark.long), 2, 3])
 @pytest.mark.parametrize(
     ("spec", "duration", "count", "options"), SMOOTH, ids=[Path(row[0]).stem for row in SMOOTH]
@@ -108,6 +108,7 @@ def test_order_is_twice_the_stages(spec, duration, count, options, stages):
     assert kept == [] or errors[-1] <= 1e-12 or orders[-1] >= 2 * stages - 0.3
 
 
+@pytest.mark.some(4)
 @pytest.mark.parametrize("stages", [3, 5])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5, 1e-7, 1e-9])
 def test_case_p_is_as_accurate_as_asked(rtol, stages):
@@ -120,7 +121,7 @@ def test_case_p_is_as_accurate_as_asked(rtol, stages):
     assert np.diff(produced, axis=1).min() >= 0
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(4)
 @pytest.mark.parametrize("spec", ALL, ids=NAMES)
 def test_balances_close_at_every_sample(spec):
     duration = {"a5_thermistor": 2e-3, "a10_maxwell_slip": 1e-2}.get(Path(spec).stem, 0.05)

@@ -75,7 +75,7 @@ def pade(z, stages):
     return np.linalg.solve(bottom, top)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("stages", [1, 2, 3, 4, 5])
 def test_a_linear_step_has_the_derivative_of_its_closed_form(stages):
     run, (step, *_) = taped(OSCILLATOR, 1.0, step=0.3, stages=stages)
@@ -92,7 +92,7 @@ def test_a_linear_step_has_the_derivative_of_its_closed_form(stages):
         assert np.allclose(end[[q, p]], wanted[:, column], rtol=0, atol=1e-14)
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     "spec", ["piezo_stack", *SOME], ids=lambda spec: getattr(spec, "stem", spec)
 )

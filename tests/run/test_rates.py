@@ -55,7 +55,7 @@ def same(found, wanted):
     assert np.allclose(found, wanted, rtol=1e-11, atol=1e-12 * size)
 
 
-@pytest.mark.some(12)
+@pytest.mark.some(6)
 @pytest.mark.parametrize(
     "path",
     ["piezo_stack", *SPECS],

@@ -142,6 +142,7 @@ FRICTIONS = (
 )
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("friction", FRICTIONS)
 def test_no_step_misses_a_steep_part_of_a_law(friction):
     m, k, F_c, w, q = friction

@@ -98,7 +98,7 @@ def leak(tmp_path_factory):
     return path
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("way", [{}, {"rtol": 1e-8}, {"step": 0.5}, {"step": 1e-3}])
 def test_a_state_that_leaves_the_domain_is_said_with_time_and_value(leak, way):
     """C dT/dt = lam (T_e - T): the time is known in closed form."""
@@ -198,6 +198,7 @@ def ended_after(seconds):
         signal.signal(signal.SIGALRM, before)
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("rtol", [1e-5, 3e-6, 1e-8])
 def test_a_run_that_crawls_towards_the_edge_ends_there(rtol):
     """Steps of one digit of the time succeed there: some 10^15 would be needed."""

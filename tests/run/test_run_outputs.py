@@ -35,7 +35,7 @@ def states_near(module, p, number, seed=3):
     return start[:, None] + size * rng.uniform(-0.2, 0.4, (start.size, number))
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(5)
 @pytest.mark.parametrize("name", [*shipped(), NETWORKS / "specs" / "rigid_couplings.toml"], ids=str)
 def test_power_is_conserved_and_energies_are_those_of_stores(name, monkeypatch):
     monkeypatch.syspath_prepend(NETWORKS)

@@ -59,7 +59,7 @@ def test_a_run_that_is_interrupted_keeps_what_it_has(method):
     assert partial.attrs["stopped"] == "stopped by the user"
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("times", [1001, 3])
 @pytest.mark.parametrize("method", [None, "LSODA"])
 def test_a_run_whose_inputs_leave_the_domain_carries_what_was_before(method, times):

@@ -36,7 +36,7 @@ def ringing(damping, rtol, c=0.1):
     return simulate(parse(OSCILLATOR), parameters=given, duration=3.0, rtol=rtol)
 
 
-@pytest.mark.some(18)
+@pytest.mark.some(6)
 @pytest.mark.parametrize("rtol", [0.1, 1e-2, 1e-3, 1e-6, 1e-8, 1e-12])
 @pytest.mark.parametrize(
     ("damping", "c"), [(1.0, 0.1), (5.0, 3e-3), (1.0, 1e-2), (1e-4, 0.1), (1e-8, 0.1), (0.0, 0.1)]

@@ -67,7 +67,7 @@ FACTORS = (
 )
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("rtol", [1e-5, 1e-8])
 @pytest.mark.parametrize("factor", FACTORS)
 def test_bodies_settle_at_one_temperature(factor, rtol):
@@ -81,7 +81,7 @@ def test_bodies_settle_at_one_temperature(factor, rtol):
     assert np.abs(found.energy_residual.values).max() <= 4 * np.spacing(found.energy.values.max())
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("warm", [305.0, 330.0])
 @pytest.mark.parametrize("factor", FACTORS)
 def test_a_body_settles_at_its_surroundings(factor, warm):

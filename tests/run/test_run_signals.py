@@ -256,6 +256,7 @@ def test_a_command_that_is_held_between_samples_may_jump_often(held):
     assert run.attrs["accepted_steps"] < 20 * held
 
 
+@pytest.mark.some(6)
 @pytest.mark.parametrize("method", [None, "Radau"])
 @pytest.mark.parametrize(
     ("drive", "end"),

@@ -151,7 +151,7 @@ def lossy(model):
     return bool(kinds & STORES) and "thermal_mass" in kinds
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("path", [p for p in SPECS if lossy(load(p))], ids=lambda path: path.stem)
 @pytest.mark.parametrize("h", [1e-6, 1e-4])
 def test_every_network_closes_both_balances_after_a_jump(path, h):
@@ -245,6 +245,7 @@ store = { kind = "capacitor", between = ["e", "gnd"], capacitance = "C" }
 """
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("h", [0.01, 0.005])
 def test_a_state_that_stands_still_again_does_not_end_the_iteration_of_others(h):
     """A start's loss heats `spare`, which nothing heats later; both steps after it are exact."""

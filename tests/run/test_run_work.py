@@ -43,6 +43,7 @@ heats   = "oil"
 BOUC_WEN = Path(__file__).parents[1] / "benchmarks" / "bouc_wen.toml"
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5])
 def test_steps_end_at_kinks_that_are_seen_before(rtol):
     inputs = {"F": sine(8.0, 0.5)}
@@ -58,6 +59,7 @@ def test_a_solve_ends_where_its_residuals_are_small():
     assert np.abs(run.energy_residual).max() < 1e-15 * run.energy.max()
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-6])
 def test_rest_at_a_knot_takes_few_steps(rtol):
     """The sign of a flow that is round-off changes without end: no step is shorter for that."""

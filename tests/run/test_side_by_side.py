@@ -180,7 +180,7 @@ def test_balances_close_where_newton_overshoots(above):
     assert np.abs(found.energy_residual).max() <= 4 * np.spacing(found.energy.max().item())
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("layout", ["one", "many", "lanes"])
 @pytest.mark.parametrize("stages", [1, 2, 5])
 def test_steps_in_vectors_are_compiled(layout, stages, no_compiler):

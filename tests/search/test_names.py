@@ -135,7 +135,7 @@ def check(new, folder, prover=of_laws):
     np.testing.assert_allclose(rates(other, folder), rates(DATA, folder), rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", ADVERSARIES)
 def test_verdicts_and_rates_do_not_depend_on_names(name, tmp_path):
     check(ADVERSARIES[name], tmp_path)

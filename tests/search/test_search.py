@@ -224,7 +224,7 @@ def test_no_verdict_of_a_small_slice_is_false(prover):
     assert sum(n for name, n in record["counts"].items() if name.endswith("REFUTED")) > 2
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("path", FOUND, ids=lambda path: path.stem)
 def test_what_was_found_once_stays_right(path, prover):
     source = path.read_text()

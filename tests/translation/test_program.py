@@ -41,7 +41,7 @@ def verdict(known, language, text):
     return found[0].verdict if found else Verdict.PROVED
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("name", ALL)
 def test_what_is_printed_is_proved(name):
     iphs = iphs_of(name)

@@ -88,7 +88,7 @@ def test_a_row_that_takes_more_than_its_share_gets_what_is_left(worker, tmp_path
     """The system ends it where the interpreter has no turn."""
     once = f"Path({str(tmp_path / 'seen')!r})"
     hangs = f"row == {DAMPER} and not {once}.exists() and ({once}.touch(), 3**10**10)"
-    worker(attacking=hangs, share=0.1)
+    worker(attacking=hangs, share=0.05)
     assert process.examined(load("piezo_stack")).proved
     assert (tmp_path / "seen").exists()
 
