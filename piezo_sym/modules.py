@@ -119,15 +119,9 @@ def _check_derivation(model: Model) -> None:
     derive(model)
 
 
-@lru_cache(maxsize=64)
-def _data(text: str) -> dict[str, Any]:
-    """Return the data of a spec's text, as for the run before; nobody changes them."""
-    return data(text)
-
-
-@lru_cache(maxsize=64)
-def _hash(text: str) -> str:
-    return spec_hash(_data(text))
+#: What the run before has read; nobody changes it.
+_data = lru_cache(maxsize=64)(data)
+_hash = lru_cache(maxsize=64)(lambda text: spec_hash(_data(text)))
 
 
 def _known(path: Path, content: dict[str, Any], text: str) -> ModuleType | None:
@@ -147,14 +141,14 @@ def _remember(content: dict[str, Any]) -> None:
     may refuse.
     """
     for one in (content, without_values(content)):
-        keep(_text_hash(one), LOADED, True, own_sources())
+        keep(_digest(one), LOADED, True, own_sources())
 
 
 def _was_loaded(content: dict[str, Any]) -> bool:
-    return kept(_text_hash(content), LOADED) is True
+    return kept(_digest(content), LOADED) is True
 
 
-def _text_hash(content: dict[str, Any]) -> str:
+def _digest(content: dict[str, Any]) -> str:
     return hashlib.sha256(repr(content).encode()).hexdigest()
 
 
