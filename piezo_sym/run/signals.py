@@ -212,12 +212,13 @@ class Triangle(_Wave):
         wave = 1 - 4 * np.abs(turns - np.floor(turns) - 0.5)
         return np.asarray(self.amplitude * wave + self.offset)
 
-    def _corners(self, duration: float) -> Iterable[float]:
-        """Return the corners, a quarter period after each zero crossing."""
-        if 2 * self.frequency * duration > MOST_CORNERS:
-            return ()
+    def corners(self, duration: float) -> FloatArray:
+        """Return the times of all corners [s], a quarter period after each zero crossing."""
         count = int(2 * self.frequency * duration) + 1
-        return (np.arange(count) + 0.5) / (2 * self.frequency)
+        return np.asarray((np.arange(count) + 0.5) / (2 * self.frequency))
+
+    def _corners(self, duration: float) -> Iterable[float]:
+        return self.corners(duration) if 2 * self.frequency * duration <= MOST_CORNERS else ()
 
     @property
     def _period(self) -> float:

@@ -7,20 +7,18 @@ values there.
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
 from os import PathLike, fspath
 from pathlib import Path
-from threading import current_thread, main_thread
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from piezo_sym.errors import FileError, RunError, UsageError, quote
 from piezo_sym.files import path_text, zarr_library
+from piezo_sym.interrupts import held_back
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.events import read_watched
 from piezo_sym.run.module import row_count
@@ -31,8 +29,6 @@ if TYPE_CHECKING:
     import xarray
 
 WHERE = "simulate.store"
-#: Signals that end a process.
-ENDINGS = (signal.SIGINT, signal.SIGTERM)
 #: The most numbers in a window, and those of a sample of time, energy, entropy and residuals.
 WINDOW, BALANCES = 4_000_000, 5
 #: The most numbers of a run in memory: 8 GB.
@@ -161,23 +157,6 @@ def _write_events(
             _write(xarray.concat([window[names] for window in hits], dim=event), path, mode="a")
         written += names
     return written
-
-
-@contextmanager
-def held_back() -> Iterator[None]:
-    """Delay signals that end the process until the block, a write to a store, is complete."""
-    if current_thread() is not main_thread():
-        yield
-        return
-    received: list[int] = []
-    before = {n: signal.signal(n, lambda number, _: received.append(number)) for n in ENDINGS}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler or signal.SIG_DFL)
-    for ending in received:
-        signal.raise_signal(ending)
 
 
 def _open(path: Path, window: xarray.Dataset, events: list[str]) -> xarray.Dataset:

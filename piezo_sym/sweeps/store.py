@@ -23,7 +23,7 @@ import xarray
 
 from piezo_sym.errors import FileError, listing
 from piezo_sym.files import path_text, zarr_library
-from piezo_sym.run.streaming import held_back
+from piezo_sym.interrupts import held_back
 from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN, Results, Shape
 from piezo_sym.sweeps.plan import Plan, Region
 from piezo_sym.sweeps.run import Result

@@ -1,5 +1,7 @@
 """What a run that stops has reached is not lost: `error.partial`, and the command's file."""
 
+import signal
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,23 @@ def test_a_run_that_fails_at_its_start_has_none():
     with pytest.raises(RunError, match="start is outside") as stopped:
         simulate("piezo_stack", inputs={"T_e": 200.0}, duration=0.1)
     assert stopped.value.partial is None
+
+
+def test_an_interrupt_in_a_function_of_time_is_not_lost():
+    """What is raised in a function that C calls goes nowhere, and the input is 0 there."""
+    sent = []
+
+    def drive(t):
+        if t > 0.05 and not sent:
+            sent.append(t)
+            signal.raise_signal(signal.SIGINT)
+        return np.sin(200 * np.pi * t) + 1e-3 * np.sin(3e5 * t)  # too many pieces for C
+
+    times = np.linspace(0, 10, 10_001)
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        simulate("oscillator", inputs={"F": drive}, duration=10, times=times)
+    assert sent
+    assert 0 < stopped.value.partial.time[-1] < 9
 
 
 @pytest.mark.some(1)

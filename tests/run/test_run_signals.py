@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from piezo_sym import chirp, ramp, samples, simulate, sine, square, step, triangle
 from piezo_sym.errors import UsageError
+from piezo_sym.run.engine.signals import InputRecords, pieces_of
 from piezo_sym.run.inputs import Inputs, as_signal
 
 numbers = st.floats(-1e6, 1e6)
@@ -72,6 +73,13 @@ def test_sine_is_the_formula():
     assert sine(1, 50, phase=0.3)(1e4 + 0.005) == pytest.approx(np.sin(0.3 + pi / 2), abs=1e-9)
     assert sine(2, 3, 5, pi / 2)(0.0) == 7
     assert sine(1, 50).max_step(1.0) <= 1 / 50 / 4
+
+
+def test_a_triangle_of_many_corners_is_no_function_that_c_calls():
+    wave = triangle(50, 500, 50)
+    assert not InputRecords(Inputs((wave,), 12.0)).calls
+    pieces, t = pieces_of(wave, 0.0, 12.0, 12.0), np.linspace(0, 12, 12_345)
+    assert np.interp(t, pieces.edges, wave(pieces.edges)) == pytest.approx(wave(t), abs=1e-9)
 
 
 def test_step_holds_after_at_its_time():

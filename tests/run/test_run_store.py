@@ -10,8 +10,8 @@ import xarray
 
 from piezo_sym import simulate, sine
 from piezo_sym.errors import FileError, UsageError
+from piezo_sym.interrupts import held_back
 from piezo_sym.run import streaming
-from piezo_sym.run.streaming import held_back
 
 pytest.importorskip("zarr")
 DRIVE = {"V_in": sine(100, 100)}

@@ -6,6 +6,7 @@ them and owns the arrays that C uses.
 
 import ctypes
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import nan
@@ -14,6 +15,7 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import NDArray
 
+from piezo_sym.interrupts import held_back
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.library import Layout, Sources, read_source, shared_library
@@ -178,8 +180,12 @@ class Batch:
         return bool(self.call("go", LONG(steps)))
 
     def call(self, name: str, *more: Any) -> Any:
-        """Call MODEL(name) with the batch; raise the exception of a user's input function."""
-        result = self.function(name)(self.address, *more)
+        """Call MODEL(name) with the batch; raise the exception of a user's input function.
+
+        An interrupt is raised behind the call: what is raised in a function that C calls is lost.
+        """
+        with held_back() if self.inputs.calls else nullcontext():
+            result = self.function(name)(self.address, *more)
         if self.inputs.raised:
             raise self.inputs.raised[0]
         return result

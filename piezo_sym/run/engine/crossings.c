@@ -8,6 +8,7 @@ typedef struct {
     long which;
     double low, high, at_low, at_high;
     int guessed; /* whether the value at `high` is only interpolated */
+    int several; /* whether another function changes its sign elsewhere in the step */
 } MODEL(crossing);
 
 /* Points at which a switching function is evaluated: begin, stages, end, and some between. */
@@ -28,9 +29,7 @@ static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
         low = least(value[i * PARTS], low);
         high = largest_of(value[i * PARTS], high);
     }
-    const real size = largest_of(size_of(low), size_of(high));
-    mask near = low < high - low; /* else the values are too far from zero */
-    near &= size > NO_SWITCH * b->widest[k];
+    const mask near = low < high - low; /* else the values are too far from zero */
     if (!any(near))
         return near;
     for (long i = 0; i <= STAGES; ++i)
@@ -55,10 +54,10 @@ static MODEL(crossing) MODEL(sign_change)(long k, const real *values, int lane)
                                  : 1.0;
         const double side = LANE(values, i, lane);
         if (side < 0.0)
-            return (MODEL(crossing)){k, at, next, value, side, part != 0};
+            return (MODEL(crossing)){k, at, next, value, side, part != 0, 0};
         at = next, value = side;
     }
-    return (MODEL(crossing)){-1, 0.0, 1.0, 0.0, 0.0, 0};
+    return (MODEL(crossing)){-1, 0.0, 1.0, 0.0, 0.0, 0, 0};
 }
 
 /* Where a sign change is, by the values around it. */
@@ -67,26 +66,79 @@ static double MODEL(place_of)(const MODEL(crossing) *c)
     return c->low + (c->high - c->low) * (c->at_low / (c->at_low - c->at_high));
 }
 
-/* The lanes in which a switching function changes its sign within the step; the first one of each lane. */
-static mask MODEL(crossed)(const MODEL(batch) *b, mask where, MODEL(crossing) *first)
+/*
+ * The lanes in which a switching function changes its sign within the step, and the first change of each. Those
+ * of functions as small as round-off are left out, and their lanes are in `slight`, unless that is NULL.
+ */
+static mask MODEL(signs_change)(const MODEL(batch) *b, mask where, MODEL(crossing) *first, mask *slight)
 {
     mask found = nowhere;
     for (long k = 0; k < b->m.branches && any(where); ++k) {
-        real values[LOOKS];
+        real values[LOOKS], largest = zero;
         mask now = where & MODEL(looks)(b, k, values), changes = nowhere;
-        for (long i = 1; i < LOOKS && any(now); ++i)
-            changes |= values[i] < 0.0;
+        for (long i = 0; i < LOOKS && any(now); ++i) {
+            changes |= i > 0 ? (mask)(values[i] < 0.0) : nowhere;
+            largest = largest_of(size_of(values[i]), largest);
+        }
         now &= changes;
+        if (slight && any(now)) {
+            const mask small = now & (largest < NO_SWITCH * b->widest[k]);
+            *slight |= small;
+            now &= none_of(small);
+        }
         if (!any(now))
             continue;
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            const MODEL(crossing) c = MODEL(sign_change)(k, values, lane);
-            if (IN(now, lane) && (!IN(found, lane) || MODEL(place_of)(&c) < MODEL(place_of)(first + lane)))
+            if (!IN(now, lane))
+                continue;
+            MODEL(crossing) c = MODEL(sign_change)(k, values, lane);
+            const double later = IN(found, lane) ? MODEL(place_of)(&c) - MODEL(place_of)(first + lane) : 0.0;
+            c.several = IN(found, lane) && (first[lane].several || fabs(later) > AT_END);
+            first[lane].several = c.several;
+            if (!IN(found, lane) || later < 0.0)
                 first[lane] = c;
         }
         found |= now;
     }
     return found;
+}
+
+/* The lanes whose steps would be the same, but for NO_DIFFERENCE, with branches by the signs at stages. */
+static mask MODEL(same_on_both)(MODEL(batch) *b, mask where, real begin, real h)
+{
+    const MODEL(block) *m = &b->m;
+    real worst = zero;
+    for (long i = 0; i <= STAGES; ++i) {
+        const real *const side = i < STAGES ? m->side + i * m->branches : b->end_side;
+        const double *const weight = i < STAGES ? stage_reach[i] : stage_weight;
+        real *const old = b->some_left;
+        MODEL(reach_of)(m, h, weight, m->reached);
+        MODEL(inputs_at)(b, where, begin + (i < STAGES ? stage_at[i] : 1.0) * h, b->some_inputs);
+        MODEL(point)(b, m->reached, m->branch, stage_end, old, b->some_side);
+        memcpy(b->end_branch, m->branch, (size_t)m->branches * sizeof(real));
+        MODEL(choose)(m->branches, side, b->end_branch, where);
+        MODEL(point)(b, m->reached, b->end_branch, stage_end, b->some_rate, b->some_side);
+        for (long k = 0; k < m->n; ++k) {
+            const real size = largest_of(m->largest[k], size_of(m->reached[k])) + 1e-300;
+            worst = largest_of(size_of(b->some_rate[k] - old[k]) * h / size, worst);
+        }
+    }
+    return where & (worst <= wide(NO_DIFFERENCE * b->tolerance));
+}
+
+/*
+ * The lanes in which a switching function changes its sign within the step; the first change of each. No change
+ * is left out in lanes whose step is not `good`: it may be on the wrong branch for that change.
+ */
+static mask MODEL(crossed)(MODEL(batch) *b, mask where, mask good, real begin, real h, MODEL(crossing) *first)
+{
+    mask slight = nowhere;
+    if (b->fixed > 0.0)
+        return MODEL(signs_change)(b, where, first, NULL);
+    const mask found = MODEL(signs_change)(b, where, first, &slight);
+    if (any(slight))
+        slight &= none_of(good & MODEL(same_on_both)(b, slight, begin, h));
+    return any(slight) ? found | MODEL(signs_change)(b, slight, first, NULL) : found;
 }
 
 /* How many lengths of a step after its end a switch is looked for. */
@@ -156,10 +208,7 @@ static double MODEL(over_switch)(const MODEL(batch) *b, int lane, long which, do
     return MODEL(lesser)(MODEL(greater)(0.5 * slack / length, AT_END), 0.5 * BEHIND);
 }
 
-/*
- * The errors, in tolerances, of steps whose ends are `behind` a switch by some time: their rates go on as
- * before it. What is known of each switch follows.
- */
+/* The errors, in tolerances, of steps that end some time `behind` a switch with the rates from before it. */
 static real MODEL(kink_error)(MODEL(batch) *b, real begin, real h, real behind, mask where)
 {
     const MODEL(block) *m = &b->m;
@@ -175,14 +224,17 @@ static real MODEL(kink_error)(MODEL(batch) *b, real begin, real h, real behind, 
     return worst / wide(b->tolerance);
 }
 
-/* The lanes whose steps may end where they do, behind the switches that are located in them. */
+/*
+ * The lanes whose steps may end where they do, behind the switches that are located in them; `slack` learns how
+ * far behind each a step may end. Rates at the end tell of one place: what several change may cancel there.
+ */
 static mask MODEL(ends_behind)(MODEL(batch) *b, mask where, real begin, real h,
                                const MODEL(crossing) *crossing, const double *part)
 {
     mask near = nowhere;
     real behind = zero;
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-        const double most = b->fixed > 0.0 ? b->beyond : BEHIND;
+        const double most = b->fixed > 0.0 || crossing[lane].several ? b->beyond : BEHIND;
         LANE(&behind, 0, lane) = (1.0 - part[lane]) * LANE(&h, 0, lane);
         SET(near, lane, IN(where, lane) && crossing[lane].which >= 0 && 1.0 - part[lane] < most);
     }
@@ -192,13 +244,15 @@ static mask MODEL(ends_behind)(MODEL(batch) *b, mask where, real begin, real h,
     const mask fits = near & (error <= 1.0);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         const double times = LANE(&error, 0, lane), time = LANE(&behind, 0, lane);
-        if (IN(near, lane) && times > 0.0)
+        if (IN(near, lane) && crossing[lane].several)
+            LANE(b->slack, crossing[lane].which, lane) = 0.0;
+        else if (IN(near, lane) && times > 0.0)
             LANE(b->slack, crossing[lane].which, lane) = time * (times < 1.0 ? sqrt(1.0 / times) : 1.0 / times);
     }
     return fits;
 }
 
-/* How precisely a sign change is located, as a part of what a step goes beyond it. */
+/* A sign change is located when its place moves by less than this part of what a step goes beyond it. */
 #define LOCATED 0.02
 
 /* Locate the sign changes of some lanes on the known polynomials, as fractions of the steps. */
@@ -227,7 +281,11 @@ static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *
             if (c->guessed) {
                 c->guessed = 0;
                 c->at_high = value;
-                if (value >= 0.0) { /* there is no sign change */
+                const double end = turn * LANE(b->end_side, c->which, lane);
+                if (value >= 0.0 && end < 0.0) { /* it comes later */
+                    c->low = c->high, c->at_low = value;
+                    c->high = 1.0, c->at_high = end;
+                } else if (value >= 0.0) { /* there is no sign change */
                     c->which = -1;
                     SET(where, lane, 0);
                 }

@@ -139,7 +139,8 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     const real worst = any(t->planned) ? MODEL(error)(b, t->h) : (real)zero;
     const real longer = MODEL(growth)(b, worst);
-    const mask across = MODEL(crossed)(b, t->steps & t->found & none_of(b->m.over), t->crossing);
+    const mask may_cross = t->steps & t->found & none_of(b->m.over);
+    const mask across = MODEL(crossed)(b, may_cross, t->good, t->begin, t->h, t->crossing);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         MODEL(lane) *l = b->lane + lane;
         if (!IN(t->steps, lane))
@@ -183,25 +184,6 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
     }
 }
 
-/* Whether a lane's step ends at a switch, or without one; else it is cut, or begins on another branch. */
-static int MODEL(ends)(MODEL(batch) *b, MODEL(dispatch) *t, int lane)
-{
-    MODEL(lane) *l = b->lane + lane;
-    const long which = t->crossing[lane].which;
-    if (which < 0)
-        return l->which < 0 || MODEL(reaches)(b, lane);
-    l->which = which;
-    if (t->part[lane] >= AT_ONCE)
-        return IN(t->fits, lane) || !MODEL(cut)(b, lane, t->part[lane]);
-    MODEL(turn)(b, lane, which, 0);
-    SET(t->turns, lane, 1);
-    l->known = 0.0;
-    l->phase = STEP;
-    if (++l->idle > MOST_REFUSED)
-        MODEL(stuck)(b, lane);
-    return 0;
-}
-
 /* Tell lanes when the next switch comes after their steps, and which. */
 static void MODEL(look_ahead)(MODEL(batch) *b, const MODEL(dispatch) *t)
 {
@@ -224,8 +206,9 @@ static void MODEL(cut_and_accepted)(MODEL(batch) *b, MODEL(dispatch) *t)
     }
     MODEL(look_ahead)(b, t);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+        const long which = t->crossing[lane].which;
         if (IN(t->switched, lane))
-            SET(t->booked, lane, MODEL(ends)(b, t, lane));
+            SET(t->booked, lane, MODEL(ends)(b, lane, which, t->part[lane], IN(t->fits, lane) != 0, &t->turns));
         if (IN(t->booked, lane) && IN(b->m.sketched, lane)) { /* no switch after all: solve it fully */
             b->lane[lane].settled = 1;
             b->lane[lane].phase = STEP;
@@ -286,7 +269,7 @@ static void MODEL(book)(MODEL(batch) *b, MODEL(dispatch) *t)
     MODEL(copy)(t->booked, b->end_side, b->side, m->branches);
     for (long k = 0; k < m->branches; ++k) {
         const real size = size_of(b->side[k]);
-        const mask more = size > b->widest[k];
+        const mask more = t->booked & (size > b->widest[k]);
         b->widest[k] = chosen(more, size, b->widest[k]);
     }
 }

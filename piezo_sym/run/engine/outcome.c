@@ -143,13 +143,17 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
     return l->which >= 0 && l->phase == STEP;
 }
 
-/* Let a lane repeat its step up to a switch, at a part of it, and a little more; 0 after too many times. */
-static int MODEL(cut)(MODEL(batch) *b, int lane, double part)
+/*
+ * Let a lane repeat its step up to a switch, at a part of it, and a little more, if that is at most `most`;
+ * returns 0 if it is not repeated, or was too many times.
+ */
+static int MODEL(cut)(MODEL(batch) *b, int lane, double part, double most)
 {
     MODEL(lane) *l = b->lane + lane;
-    if (++l->cuts > MOST_CUTS)
+    const double over = MODEL(over_switch)(b, lane, l->which, part * l->length, 0.5 * b->beyond);
+    if (!(part * (1.0 + over) <= most) || ++l->cuts > MOST_CUTS)
         return 0;
-    l->part = part * (1.0 + MODEL(over_switch)(b, lane, l->which, part * l->length, 0.5 * b->beyond));
+    l->part = part * (1.0 + over);
     l->phase = CUT;
     return 1;
 }
@@ -168,8 +172,30 @@ static int MODEL(reaches)(MODEL(batch) *b, int lane)
         return 1;
     const double longest = (MODEL(until)(b, l) - l->t) / l->length;
     const double part = 1.0 + (l->goal == l->which ? l->ahead / l->length : 0.0);
-    if (part > 1.0 && part < MODEL(lesser)(longest, l->phase == CUT ? SHORT_CUT : SHORT))
-        return !MODEL(cut)(b, lane, part);
-    l->which = l->phase == CUT ? l->which : -1;
+    const double most = MODEL(lesser)(longest, l->phase == CUT ? SHORT_CUT : SHORT);
+    if (part > 1.0 && MODEL(cut)(b, lane, part, most))
+        return 0;
+    l->which = -1;
     return 1;
+}
+
+/*
+ * Whether a lane's step ends at a switch, or without one; else it is cut, or begins on another branch. `which`:
+ * the switch that was located at `part`, or -1; `fits`: whether the step may end as far behind it as it does.
+ */
+static int MODEL(ends)(MODEL(batch) *b, int lane, long which, double part, int fits, mask *turns)
+{
+    MODEL(lane) *l = b->lane + lane;
+    if (which < 0)
+        return l->which < 0 || MODEL(reaches)(b, lane);
+    l->which = which;
+    if (part >= AT_ONCE)
+        return fits || !MODEL(cut)(b, lane, part, HUGE_VAL);
+    MODEL(turn)(b, lane, which, 0);
+    SET(*turns, lane, 1);
+    l->known = 0.0;
+    l->phase = STEP;
+    if (++l->idle > MOST_REFUSED)
+        MODEL(stuck)(b, lane);
+    return 0;
 }

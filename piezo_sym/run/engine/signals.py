@@ -16,7 +16,7 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.records import DOUBLE, POINTER, c_record
 from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.samples import Samples
-from piezo_sym.run.signals import Chirp, Constant, Ramp, Signal, Sine, Square, Step
+from piezo_sym.run.signals import Chirp, Constant, Ramp, Signal, Sine, Square, Step, Triangle
 
 _CALLED = ctypes.CFUNCTYPE(DOUBLE, DOUBLE)
 #: Terms of a piece, and the greatest value of the last two, over the signal's size.
@@ -24,18 +24,22 @@ TERMS, EXACT = 12, 1e-13
 #: The first number of pieces of a run, so that their nodes are as dense as the samples of `jumps`;
 #: the most times that pieces are halved, and the most pieces.
 FIRST, ROUNDS, MOST = 192, 16, 5000
+#: The most corners of a triangle wave that is a polygon in C.
+MOST_LINES = 1_000_000
 
 
 @final
 class InputRecords:
     """The segments of inputs in C, an array of MODEL(segment), and the arrays that they need.
 
-    `raised` are exceptions of functions of time, which C cannot pass on.
+    `raised` are exceptions of functions of time, which C cannot pass on; `calls`: whether it has
+    such functions.
     """
 
     def __init__(self, inputs: Inputs) -> None:
         self._inputs = inputs
-        self.raised: list[Exception] = []
+        self.raised: list[BaseException] = []
+        self.calls = False
         self._kept: list[Any] = []
         segments = [self._segment(segment) for segment in inputs.segments]
         self.segments: Any = (c_record("segment") * len(segments))(*segments)
@@ -71,10 +75,11 @@ class InputRecords:
         def called(t: float) -> float:
             try:
                 return float(signal(min(max(t, low), high)))
-            except Exception as error:  # the user's own code; with nan, C finds no step
+            except BaseException as error:  # the user's own code; with nan, C finds no step
                 self.raised.append(error)
                 return nan
 
+        self.calls = True
         self._kept.append(_CALLED(called))
         return wave(called=ctypes.cast(self._kept[-1], POINTER))
 
@@ -91,7 +96,9 @@ class Pieces:
 def pieces_of(signal: Signal, low: float, high: float, duration: float) -> Pieces | None:
     """Return a signal as polynomials on [low, high]; None if it needs too many pieces."""
     if isinstance(signal, Samples):
-        return _lines(signal, low, high)
+        return _lines(signal, signal.times, low, high)
+    if isinstance(signal, Triangle) and 2 * signal.frequency * high <= MOST_LINES:
+        return _lines(signal, signal.corners(high), low, high)
     at = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)
     to_terms = np.linalg.inv(np.polynomial.chebyshev.chebvander(at, TERMS - 1)).T
     first = 1 if isinstance(signal, Step | Ramp | Square) else ceil(FIRST * (high - low) / duration)
@@ -120,8 +127,8 @@ def pieces_of(signal: Signal, low: float, high: float, duration: float) -> Piece
     return Pieces(np.append(starts[order], high), np.ascontiguousarray(coefficients))
 
 
-def _lines(signal: Samples, low: float, high: float) -> Pieces:
-    inner = signal.times[(signal.times > low) & (signal.times < high)]
+def _lines(signal: Signal, times: FloatArray, low: float, high: float) -> Pieces:
+    inner = times[(times > low) & (times < high)]
     edges = np.concatenate([[low], inner, [high]])
     values = np.asarray(signal(edges))
     first, last = values[:-1], values[1:]

@@ -109,10 +109,11 @@ enum { TRIED = 32, AGAIN = 12 };
 /* A refused step is repeated up to where a path functional begins to yield, if before this part. */
 #define YIELDS 0.999
 /*
- * A switching function that stays below this part of its largest magnitude is round-off, as at rest. Its sign
- * does not count, unless laws jump.
+ * A switching function below this part of its largest magnitude may be round-off, as at rest. Its sign does not
+ * count if it makes no difference to the step, in tolerances: such steps may follow each other for long.
  */
-#define NO_SWITCH (MODEL(jumps) ? 0.0 : 1e-13)
+#define NO_SWITCH 1e-13
+#define NO_DIFFERENCE 1e-5
 /* A switch within this fraction of a step from its end, or its beginning, counts as there. */
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
