@@ -12,15 +12,18 @@ _ENDINGS = (signal.SIGINT, signal.SIGTERM)
 
 
 @contextmanager
-def held_back() -> Iterator[None]:
-    """Delay signals that end the process until the block is complete: a write, or a call of C."""
-    if current_thread() is not main_thread():
-        yield
-        return
+def held_back() -> Iterator[list[int]]:
+    """Delay signals that end the process until the block is complete: a write, or a call of C.
+
+    The block gets the list of those received so far, to end sooner.
+    """
     received: list[int] = []
+    if current_thread() is not main_thread():
+        yield received
+        return
     before = {n: signal.signal(n, lambda number, _: received.append(number)) for n in _ENDINGS}
     try:
-        yield
+        yield received
     finally:
         for number, handler in before.items():
             signal.signal(number, handler or signal.SIG_DFL)

@@ -6,7 +6,7 @@ them and owns the arrays that C uses.
 
 import ctypes
 from collections.abc import Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import nan
@@ -184,8 +184,13 @@ class Batch:
 
         An interrupt is raised behind the call: what is raised in a function that C calls is lost.
         """
-        with held_back() if self.inputs.calls else nullcontext():
+        delayed = held_back if self.inputs.calls else _no_signals
+        with delayed() as self.inputs.received:
             result = self.function(name)(self.address, *more)
         if self.inputs.raised:
             raise self.inputs.raised[0]
         return result
+
+
+def _no_signals() -> AbstractContextManager[list[int]]:
+    return nullcontext([])

@@ -33,13 +33,13 @@ class InputRecords:
     """The segments of inputs in C, an array of MODEL(segment), and the arrays that they need.
 
     `raised` are exceptions of functions of time, which C cannot pass on; `calls`: whether it has
-    such functions.
+    such functions; `received`: signals that end the process, and so the run.
     """
 
     def __init__(self, inputs: Inputs) -> None:
         self._inputs = inputs
         self.raised: list[BaseException] = []
-        self.calls = False
+        self.calls, self.received = False, list[int]()
         self._kept: list[Any] = []
         segments = [self._segment(segment) for segment in inputs.segments]
         self.segments: Any = (c_record("segment") * len(segments))(*segments)
@@ -73,6 +73,8 @@ class InputRecords:
             return wave(edges=edges, coefficients=coefficients, pieces=count, terms=terms)
 
         def called(t: float) -> float:
+            if self.raised or self.received:
+                return nan  # the run ends
             try:
                 return float(signal(min(max(t, low), high)))
             except BaseException as error:  # the user's own code; with nan, C finds no step
