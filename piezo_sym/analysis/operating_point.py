@@ -70,10 +70,11 @@ class OperatingPoint:
     undetermined: tuple[str, ...]
 
     def __repr__(self) -> str:
-        """Return outputs, temperatures, and whether it is stable."""
+        """Return outputs, temperatures, whether it is stable, and what is not determined."""
         shown = {**self.outputs, **{f"T_{body}": T for body, T in self.temperatures.items()}}
         values = ", ".join(f"{name} = {value:.6g}" for name, value in shown.items())
-        return f"OperatingPoint({values}, {'stable' if self.stable else 'unstable'})"
+        free = "".join(f", {name} is not determined" for name in self.undetermined)
+        return f"OperatingPoint({values}, {'stable' if self.stable else 'unstable'}{free})"
 
 
 @calling("operating_point")

@@ -79,7 +79,7 @@ def lane_value(value: object, size: int | None, where: str) -> float | tuple[flo
     values = tuple(vector(value, where).tolist())
     if len(values) != size:
         remedy = "give one number for all lanes, or one per lane"
-        what = f"{len(values)} values for {size} lanes"
+        what = f"{len(values)} values for {size} lane{'s' * (size != 1)}"
         raise UsageError(what, where, f"{size}", remedy)
     return values
 

@@ -225,9 +225,10 @@ def _index_of(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> in
 def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> int:
     others = [n for n in range(len(headers)) if n != t]
     if len(others) != 1:
-        named = listing([headers[n][0] for n in others])
-        what = f"{len(others)} columns beside the times: {named}"
-        remedy = "name one like the input, or, in Python, say column=..."
+        names = [headers[n][0] for n in others]
+        what = f"{len(others)} columns beside the times: {listing(names)}"
+        first = f"column={quote(names[0])}" if names else "column=..."
+        remedy = f"in Python say which, {first}; on a command line name one like the input"
         raise UsageError(what, str(path), "one", remedy)
     return others[0]
 

@@ -24,6 +24,7 @@ def test_the_actuator_rests_where_its_forces_balance() -> None:
     assert list(found.outputs) == ["y_load", "y_supply", "y_ambient"]
     assert found.stable
     assert found.undetermined == ("phi[1]", "phi[2]")  # they circulate within the dead zones
+    assert repr(found).endswith("phi[1] is not determined, phi[2] is not determined)")
     assert np.abs(found.initial["phi"]).max() < 1e-15
 
 

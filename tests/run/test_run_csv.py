@@ -70,7 +70,7 @@ def test_columns_by_name(write):
         ("t,V\n0,1\n", {"column": 1}, UsageError, "'1' is no header; expected the text over"),
         ("t,V\n0,1\n", {"time_column": 0}, UsageError, "time_column: '0' is no header"),
         ("t,V,V\n0,1,2\n", {"column": "V"}, UsageError, "two columns are named 'V'"),
-        ("t,V,W\n0,1,2\n", {}, UsageError, "2 columns beside the times: V, W; expected one"),
+        ("t,V,W\n0,1,2\n", {}, UsageError, "V, W; expected one; in Python say which, column='V'"),
         ("t,V\n0,1\n", {}, UsageError, "1 times and 1 values"),
         ("t,V\n1,1\n0,1\n", {}, UsageError, "time 0 in line 3 follows 1"),
         ("t,V\n0,1\n1,1\n2,1\n1,1\n", {}, UsageError, "time 1 in line 5 follows 2"),

@@ -38,7 +38,7 @@ REFUSED = [
     ({"over": {"hysteron_count": [1.5]}}, "'1.5' is not allowed; expected a whole number"),
     (
         {"over": {"hysteron_count": [1, 2]}, "parameters": {"L": [1e-3, 1e-3]}},
-        "sweep.parameters.L: 2 values for 1 lanes",
+        "sweep.parameters.L: 2 values for 1 lane",
     ),
     ({"over": {"V_in": ["x"]}}, "sweep.over.V_in[0]: 'x' is no input"),
     ({"over": {"V_in": [([0, 0.001], [0, 1])]}}, "samples span 0 s to 0.001 s"),
