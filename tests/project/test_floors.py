@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "piezo_sym"
 GENERATED = sorted((ROOT / "generated").rglob("*.py"))
 
-GROUND = {"version", "errors", "files", "processes", "report"}
+GROUND = {"version", "errors", "files", "interrupts", "processes", "report"}
 TOP = ({"cli"}, {"__main__"})
 PROVING = (
     GROUND,

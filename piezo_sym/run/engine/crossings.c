@@ -77,7 +77,8 @@ static mask MODEL(signs_change)(const MODEL(batch) *b, mask where, MODEL(crossin
         real values[LOOKS], largest = zero;
         mask now = where & MODEL(looks)(b, k, values), changes = nowhere;
         for (long i = 0; i < LOOKS && any(now); ++i) {
-            changes |= i > 0 ? (mask)(values[i] < 0.0) : nowhere;
+            if (i > 0)
+                changes |= values[i] < 0.0;
             largest = largest_of(size_of(values[i]), largest);
         }
         now &= changes;
