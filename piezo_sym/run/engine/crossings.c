@@ -136,10 +136,12 @@ static mask MODEL(crossed)(MODEL(batch) *b, mask where, mask good, real begin, r
     mask slight = nowhere;
     if (b->fixed > 0.0)
         return MODEL(signs_change)(b, where, first, NULL);
-    const mask found = MODEL(signs_change)(b, where, first, &slight);
-    if (any(slight))
+    mask found = MODEL(signs_change)(b, where, first, &slight);
+    if (any(slight)) {
         slight &= none_of(good & MODEL(same_on_both)(b, slight, begin, h));
-    return any(slight) ? found | MODEL(signs_change)(b, slight, first, NULL) : found;
+        found |= MODEL(signs_change)(b, slight, first, NULL);
+    }
+    return found;
 }
 
 /* How many lengths of a step after its end a switch is looked for. */
