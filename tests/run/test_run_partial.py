@@ -49,18 +49,20 @@ def test_a_run_that_fails_at_its_start_has_none():
 
 def test_an_interrupt_in_a_function_of_time_is_not_lost():
     """What is raised in a function that C calls goes nowhere, and the input is 0 there."""
-    calls = []
+    calls, delayed = [], []
 
     def drive(t):
         if np.ndim(t) == 0:
             calls.append(t)
             if len(calls) == 8000:  # more than there are before the run
                 signal.raise_signal(signal.SIGINT)
+                delayed.append(t)  # it is raised behind the call of C
         return np.sin(2e3 * t) + np.sin(3e5 * t)  # too many pieces for C, which calls it
 
     given = {"duration": 1, "times": np.linspace(0, 1, 101), "rtol": 1e-6}
     with pytest.raises(KeyboardInterrupt) as stopped:
         simulate("oscillator", inputs={"F": drive}, **given)
+    assert delayed
     assert stopped.value.partial.time[-1] > 0
 
 

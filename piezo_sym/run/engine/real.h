@@ -190,25 +190,26 @@ static inline real turned_sin(real a, uint64_t quarters)
     return chosen(negative, -size, size);
 }
 
-/* Beyond this, the parts of pi have too few bits. */
+/* Beyond this, the parts of pi have too few bits: the library knows the function there. */
 #define MOST_TURNED 1e6
+
+static inline real turned_by(real a, uint64_t quarters, double (*function)(double))
+{
+    real found = turned_sin(a, quarters);
+    for (int lane = 0; lane < REAL_WIDTH && any(size_of(a) > MOST_TURNED); ++lane)
+        if (fabs(LANE(&a, 0, lane)) > MOST_TURNED)
+            LANE(&found, 0, lane) = function(LANE(&a, 0, lane));
+    return found;
+}
 
 static inline real sin_of(real a)
 {
-    real found = turned_sin(a, 0);
-    for (int lane = 0; lane < REAL_WIDTH && any(size_of(a) > MOST_TURNED); ++lane)
-        if (fabs(LANE(&a, 0, lane)) > MOST_TURNED)
-            LANE(&found, 0, lane) = sin(LANE(&a, 0, lane));
-    return found;
+    return turned_by(a, 0, sin);
 }
 
 static inline real cos_of(real a)
 {
-    real found = turned_sin(a, 1);
-    for (int lane = 0; lane < REAL_WIDTH && any(size_of(a) > MOST_TURNED); ++lane)
-        if (fabs(LANE(&a, 0, lane)) > MOST_TURNED)
-            LANE(&found, 0, lane) = cos(LANE(&a, 0, lane));
-    return found;
+    return turned_by(a, 1, cos);
 }
 
 /* The other functions, lane after lane: c_sources.py adds a line per function, from its record. */
