@@ -35,7 +35,7 @@ _REALS = (
     "PLAIN MODEL REAL_WIDTH LANE OF SET LANES NUMBER FUNCTION RADICAND NOT_PROVED COSTATES BENDS "
     "PATHS ALONE REAL real mask pattern few zero "
     "nowhere wide chosen any none_of size_of with_sign power_of_two small_expm1 reduced is_above "
-    "roots_of ROUNDING_AS_SET turned_sin turned_by MOST_TURNED is_at_least pow_of whole_power "
+    "roots_of ROUNDING_AS_SET turned_sin turned_or MOST_TURNED is_at_least pow_of whole_power "
     "least largest_of bits_of real_of pick deadzone saturate sign"
 )
 _ENDS = (

@@ -193,7 +193,7 @@ static inline real turned_sin(real a, uint64_t quarters)
 /* Beyond this, the parts of pi have too few bits: the library knows the function there. */
 #define MOST_TURNED 1e6
 
-static inline real turned_by(real a, uint64_t quarters, double (*function)(double))
+static inline real turned_or(real a, uint64_t quarters, double (*function)(double))
 {
     real found = turned_sin(a, quarters);
     for (int lane = 0; lane < REAL_WIDTH && any(size_of(a) > MOST_TURNED); ++lane)
@@ -204,12 +204,12 @@ static inline real turned_by(real a, uint64_t quarters, double (*function)(doubl
 
 static inline real sin_of(real a)
 {
-    return turned_by(a, 0, sin);
+    return turned_or(a, 0, sin);
 }
 
 static inline real cos_of(real a)
 {
-    return turned_by(a, 1, cos);
+    return turned_or(a, 1, cos);
 }
 
 /* The other functions, lane after lane: c_sources.py adds a line per function, from its record. */
