@@ -141,19 +141,25 @@ def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) ->
     """Write a result, then print it, so that a closed pipe does not lose it."""
     if out is not None and not _is_store(out):
         _write(result, out)
-    from piezo_sym.run.events import EVENT
-
     _print(result)
-    for name, hits in result.coords.items():
-        if str(hits.attrs.get("long_name", "")).startswith(EVENT):
-            first = ", ".join(f"{t:.9g}" for t in hits.values[:4]) + ", ..." * (hits.size > 4)
-            typer.echo(f"event {name}, {hits.size} in all: t = {first or 'never'}")
+    for line in _event_lines(result):
+        typer.echo(line)
     if "stopped" in result.attrs:
         typer.echo(f"stopped: {result.attrs['stopped']}")
     for line in assumed:
         typer.echo(line)
     if out is not None:
         typer.echo(f"{out}")
+
+
+def _event_lines(result: xarray.Dataset) -> Iterator[str]:
+    """Yield a line for each event of a run: how often it happens, and when at first."""
+    from piezo_sym.run.events import EVENT
+
+    for name, hits in result.coords.items():
+        if str(hits.attrs.get("long_name", "")).startswith(EVENT):
+            first = ", ".join(f"{t:.9g}" for t in hits.values[:4]) + ", ..." * (hits.size > 4)
+            yield f"event {name}, {hits.size} in all: t = {first or 'never'}"
 
 
 def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
@@ -190,11 +196,13 @@ def _check_out(out: Path | None, events: list[str] | None) -> list[str]:
 
 @contextmanager
 def keeping(out: Path | None) -> Iterator[None]:
-    """Write the partial result of a run that stops inside, and say so."""
+    """Print the events of a run that stops inside, write its partial result, and say so."""
     try:
         yield
     except (RunError, KeyboardInterrupt) as stopped:
         partial = getattr(stopped, "partial", None)
+        for line in () if partial is None else _event_lines(partial):
+            typer.echo(line)
         if out is not None and partial is not None:
             if not _is_store(out):
                 _write(partial, out)

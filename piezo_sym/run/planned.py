@@ -86,7 +86,7 @@ class PlannedRun:
             trajectory, work = self.run(samples)
         except (RunError, KeyboardInterrupt) as stopped:
             times, seen = getattr(stopped, "reached", None) or (samples[:0], None)
-            if seen is not None and times.size:
+            if getattr(stopped, "partial", None) is None and seen is not None and times.size:
                 why = str(stopped) or "stopped by the user"
                 vars(stopped)["partial"] = self._dataset_of(times, seen, {"stopped": why})
             raise
@@ -108,25 +108,29 @@ class PlannedRun:
             try:
                 trajectory, attrs = self.run(times)
             except RunError as error:
-                if error.reached is None:
+                if error.reached is None or not error.reached[0].size:
                     raise
-                failed[:] = [error]
+                failed.append(error)
                 times, trajectory = error.reached
             else:
                 work.update(attrs)
             return times, trajectory
 
         located = locate(self.system, watched, samples, run(samples)[1].steps, run)
-        if located.end is None and failed:
-            run(samples)
-            raise failed[0]
-        kept = samples
+        ends, kept = located.end is None and bool(failed), samples
+        if ends:
+            work["stopped"] = str(failed[0])
         if located.end is not None:
             kept = np.append(samples[samples < located.end], located.end)
             work["stopped"] = f"{watched.condition} at t = {located.end:.9g} s"
         times, seen = run(np.unique(np.concatenate([kept, *located.times.values()])))
+        kept = kept[kept <= times[-1]]
         dataset = self._dataset_of(kept, seen.at(np.searchsorted(times, kept)), work)
-        return dataset.assign(dict(event_variables(self.system, located, times, seen)))
+        dataset = dataset.assign(dict(event_variables(self.system, located, times, seen)))
+        if ends:
+            failed[0].partial = dataset
+            raise failed[0]
+        return dataset
 
 
 def compiled_run(

@@ -60,11 +60,8 @@ def streamed(
             window = np.minimum(window, planned.system.inputs.end)  # by round-off
             located = read_watched(planned.system, events, stop, request.step)
             run = planned.dataset(window, replace(located, signs=signs))
-            at_events = [name for name in run.data_vars if {*run[name].dims} & {*located.event}]
-            events_here, run = run[at_events], run.drop_dims([*located.event])
             with held_back():
-                written = _append(path, run, written)
-                hits.append(events_here)
+                written = _append(path, _timed(run, events, hits), written)
             request = replace(request, slack=np.inf)
             last = run.isel(time=-1)
             state = {record.name: last[record.name].values for record in request.module.STATES}
@@ -74,12 +71,14 @@ def streamed(
         rest = getattr(stopped, "partial", None)
         if rest is not None:
             with held_back():
-                written = _append(path, rest, written)
+                written = _append(path, _timed(rest, events, hits), written)
         if written is not None:
-            vars(stopped)["partial"] = _open(path, written, _write_events(path, hits, events))
+            vars(stopped)["partial"] = _open(
+                path, written, _write_events(path, written, hits, events)
+            )
         raise
     assert written is not None  # there is one window at least
-    return _open(path, written, _write_events(path, hits, events))
+    return _open(path, written, _write_events(path, written, hits, events))
 
 
 def _windows(request: Request, samples: FloatArray) -> Iterator[FloatArray]:
@@ -120,6 +119,16 @@ def _new_store(store: object) -> Path:
     return path
 
 
+def _timed(
+    run: xarray.Dataset, events: Iterable[str] | None, hits: list[xarray.Dataset]
+) -> xarray.Dataset:
+    """Return a window without its events, which go to `hits`; a run that is interrupted has none."""
+    of_events = {*(events or ())} & {*run.dims}
+    if of_events:
+        hits.append(run[[name for name in run.data_vars if of_events & {*run[name].dims}]])
+    return run.drop_dims(of_events)
+
+
 def _append(path: Path, window: xarray.Dataset, before: xarray.Dataset | None) -> xarray.Dataset:
     """Write a window after the one before, and return it as written."""
     if before is None:
@@ -145,16 +154,23 @@ def _write(window: xarray.Dataset, path: Path, **options: Any) -> None:
 
 
 def _write_events(
-    path: Path, hits: list[xarray.Dataset], events: Iterable[str] | None
+    path: Path,
+    last: xarray.Dataset,
+    hits: list[xarray.Dataset],
+    events: Iterable[str] | None,
 ) -> list[str]:
-    """Write the events of all windows, and return the names of their quantities."""
+    """Write the events of all windows, and return the names of their quantities.
+
+    The attributes of the store are replaced, too: by those of the last window.
+    """
     import xarray
 
     written: list[str] = []
     for event in (events or ()) if hits else ():
         names = [str(name) for name, values in hits[0].data_vars.items() if event in values.dims]
         with held_back():
-            _write(xarray.concat([window[names] for window in hits], dim=event), path, mode="a")
+            found = xarray.concat([window[names] for window in hits], dim=event)
+            _write(found.assign_attrs(last.attrs), path, mode="a")
         written += names
     return written
 

@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray
 
@@ -434,15 +435,19 @@ def test_a_dissipative_start_is_asked_for_in_a_word(call):
     assert len(refused.err.splitlines()) == 1
 
 
-def test_a_run_that_stops_leaves_a_file_and_says_so(refused, spec_file, tmp_path):
+def test_a_run_that_stops_leaves_a_file_and_says_so(call, spec_file, tmp_path):
     warm = spec_file("[inputs]", 'T_m = { value = 300.0, unit = "K" }\n[inputs]')
     text = warm.read_text(encoding="utf-8").replace("assume = [", 'assume = ["T < T_m", ', 1)
     warm.write_text(text, encoding="utf-8")
     out = tmp_path / "warm.nc"
     options = ("--duration", "0.2", "-i", "V_in=sine(100,100)", "--out", out)
-    assert refused("simulate", warm, *options).endswith(f"'{out}' holds the run until t = 0.0304 s")
+    answer = call("simulate", warm, *options, "--event", "on=V_in")
+    assert answer.code == 2
+    assert answer.err.endswith(f"'{out}' holds the run until t = 0.0304 s\n")
+    assert answer.out == "event on, 6 in all: t = 0.005, 0.01, 0.015, 0.02, ...\n"
     with xarray.open_dataset(out) as partial:
         assert float(partial.time[-1]) == pytest.approx(0.0304)
+        assert partial.on.values == pytest.approx(0.005 * np.arange(1, 7))
 
 
 @pytest.mark.some(1)

@@ -7,10 +7,17 @@ from scipy.optimize import brentq
 
 from piezo_sym import load, simulate, sine
 from piezo_sym.errors import RunError, UsageError
+from piezo_sym.run import streaming
 from tests.networks.test_acceptance import OSCILLATOR, TWO_BODIES
 
 DRIVE = {"V_in": sine(100, 100)}
 LENGTH = 5.0
+#: The oscillator, in a domain that it leaves.
+ENDS = (
+    OSCILLATOR.read_text()
+    .replace("assume = [", 'assume = ["q > q_m", ', 1)
+    .replace("[domain]", '[parameters.q_m]\nvalue = -0.5\nunit = "m"\n[domain]', 1)
+)
 
 
 def swing(t: float) -> float:
@@ -49,17 +56,31 @@ def test_a_run_stops_where_a_condition_first_holds():
 
 def test_a_stop_comes_before_what_would_fail():
     """The run would leave its domain, q < 2 mm, later."""
-    text = OSCILLATOR.read_text().replace("assume = [", 'assume = ["q > q_m", ', 1)
-    text = text.replace("[domain]", '[parameters.q_m]\nvalue = -0.5\nunit = "m"\n[domain]', 1)
-    model = load_text(text)
+    model = load_text(ENDS)
     with pytest.raises(RunError, match="leaves the domain"):
         simulate(model, duration=LENGTH)
     run = simulate(model, duration=LENGTH, stop="q < -0.4", events={"rest": "q"})
     assert float(run.q[-1]) == pytest.approx(-0.4, rel=1e-14)
     assert run.sizes["rest"] == 1
+
+
+@pytest.mark.parametrize("options", [{}, {"method": "DOP853"}, {"store": "run.zarr"}])
+def test_events_before_a_failure_are_kept(options, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(streaming, "WINDOW", 2000)  # numbers: the run fails in its second window
+    model = load_text(ENDS)
+    watched = {"events": {"rest": "q", "never": "q - 2"}}
+    with pytest.raises(RunError, match="leaves the domain") as plain:
+        simulate(model, duration=LENGTH, **(options | {"store": None}))
     with pytest.raises(RunError, match="leaves the domain") as stopped:
-        simulate(model, duration=LENGTH, events={"rest": "q"})
-    assert stopped.value.partial.sizes["time"] > 10
+        simulate(model, duration=LENGTH, **options, **watched)
+    partial = stopped.value.partial
+    assert str(stopped.value) == str(plain.value)
+    assert np.array_equal(partial.time, plain.value.partial.time)
+    assert partial.rest.values == pytest.approx([brentq(swing, 0.5, 1.2)], abs=1e-4)
+    assert np.abs(partial.q_at_rest.values).max() < 1e-15
+    assert partial.sizes["never"] == 0
+    assert partial.attrs["stopped"] == str(plain.value)
 
 
 def test_an_input_that_jumps_is_an_event():

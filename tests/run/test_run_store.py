@@ -70,6 +70,7 @@ def test_events_are_kept(tmp_path):
     assert np.abs(kept.hit - whole.hit.values).max() < 1e-9
     assert np.abs(kept.phi_at_hit.values - whole.phi_at_hit.values).max() < 1e-9
     assert kept.hit.attrs == whole.hit.attrs
+    assert kept.attrs["accepted_steps"] >= whole.attrs["accepted_steps"]  # of all windows
 
 
 @pytest.mark.parametrize(
