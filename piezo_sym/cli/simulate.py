@@ -22,7 +22,7 @@ from piezo_sym.errors import (
     UsageError,
     listing,
 )
-from piezo_sym.files import near_file, path_text, write_bytes, zarr_library
+from piezo_sym.files import near_file, path_text, write_bytes, write_together, zarr_library
 
 if TYPE_CHECKING:
     import xarray
@@ -38,6 +38,8 @@ TIMES = "Number of samples; 1001, or ends of steps, if left out."
 EVENTS = "NAME=EXPRESSION, located where its sign changes; repeat."
 STOP = "A comparison, such as 'T_body > 350', that ends the run."
 T0 = "When the run starts [s]; 0, or where it goes on."
+OUT = """A .nc or .csv, which is replaced, or a new .zarr, written as it goes; folders are made.
+Beside x.csv, x_NAME.csv has the times of each event."""
 DURATION = "Length of the run [s], or with a unit: 20ms."
 STEP = "A fixed step [s] instead of --rtol."
 OUTPUTS = "Quantities of elements: all, or spring,damper.heat,..."
@@ -81,9 +83,7 @@ def simulate(
     dissipative_start: Annotated[
         bool, option("Damp what rings after a jump of an input.", "--dissipative-start")
     ] = False,
-    out: Annotated[
-        Path | None, option("A .nc or .csv, which is replaced, or a new .zarr, written as it goes.")
-    ] = None,
+    out: Annotated[Path | None, option(OUT)] = None,
 ) -> None:
     """Simulate a spec's generated module and print its last values.
 
@@ -94,7 +94,7 @@ def simulate(
     first column, joined by straight lines, whose header may say units: t [ms],V_in [kV]. Of several
     columns the one named like the input counts.
     """
-    made = _check_out(out, events)
+    made = _check_out(out)
     units = Units(spec)
     signals = dict(pairs(inputs or (), "--input", units.signal))
     span = {"duration": duration, "t0": t0, "times": times, "stop": stop}
@@ -149,17 +149,23 @@ def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) ->
     for line in assumed:
         typer.echo(line)
     if out is not None:
-        typer.echo(f"{out}")
+        _, *tables = _tables(result, out).values() if out.suffix == ".csv" else (out,)
+        typer.echo(f"{out}" + f"; events: {listing(map(str, tables))}" * bool(tables))
+
+
+def _events(result: xarray.Dataset) -> Mapping[str, xarray.DataArray]:
+    """Return the times of each event of a run."""
+    from piezo_sym.run.events import EVENT
+
+    about = ((str(n), hits, str(hits.attrs.get("long_name"))) for n, hits in result.coords.items())
+    return {name: hits for name, hits, text in about if text.startswith(EVENT)}
 
 
 def _event_lines(result: xarray.Dataset) -> Iterator[str]:
     """Yield a line for each event of a run: how often it happens, and when at first."""
-    from piezo_sym.run.events import EVENT
-
-    for name, hits in result.coords.items():
-        if str(hits.attrs.get("long_name", "")).startswith(EVENT):
-            first = ", ".join(f"{t:.9g}" for t in hits.values[:4]) + ", ..." * (hits.size > 4)
-            yield f"event {name}, {hits.size} in all: t = {first or 'never'}"
+    for name, hits in _events(result).items():
+        first = ", ".join(f"{t:.9g}" for t in hits.values[:4]) + ", ..." * (hits.size > 4)
+        yield f"event {name}, {hits.size} in all: t = {first or 'never'}"
 
 
 def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
@@ -182,13 +188,10 @@ def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
         raise FileError("is no run that can go on", path_text(path), remedy=remedy) from cause
 
 
-def _check_out(out: Path | None, events: list[str] | None) -> list[str]:
+def _check_out(out: Path | None) -> list[str]:
     """Check where a result is to be written; return what is said of a folder that is made."""
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
-    if out is not None and out.suffix == ".csv" and events:
-        what = f"{path_text(out)}, a table over time, has no place for events"
-        raise UsageError(what, "--out", "a file ending in .nc")
     if out is None or out.parent.exists():
         return []
     return [f"made the folder {path_text(out.parent)}"]
@@ -241,18 +244,28 @@ def _write(result: xarray.Dataset, path: Path) -> None:
     if path.suffix == ".nc":
         write_bytes(path, bytes(result.to_netcdf(engine="scipy")))
     else:
-        write_bytes(path, columns(result).to_csv(index=False).encode())
+        tables = _tables(result, path).items()
+        texts = ((file, columns(result, over).to_csv(index=False)) for over, file in tables)
+        write_together({file: text.encode() for file, text in texts})
 
 
-def columns(result: xarray.Dataset) -> Any:
-    """Return a result as a table: one column per quantity, for a bank one per lane."""
+def _tables(result: xarray.Dataset, path: Path) -> Mapping[str, Path]:
+    """Return the tables of a .csv: of quantities over time, and over the times of each event."""
+    return {"time": path} | {
+        name: path.with_stem(f"{path.stem}_{name}") for name in _events(result)
+    }
+
+
+def columns(result: xarray.Dataset, over: str) -> Any:
+    """Return what is `over` some times as a table: a column per quantity, for a bank per lane."""
     import pandas as pd
 
     from piezo_sym.run.sample_files import header_of
 
-    series = {header_of("time", "s"): result.time.to_series()}
+    series = {header_of(over, "s"): result[over].to_series()}
     for name, variable in result.data_vars.items():
-        frame, unit = variable.to_pandas(), str(variable.attrs["units"])
-        lanes = {name: frame} if variable.ndim == 1 else frame.add_prefix(f"{name}_")
-        series |= {header_of(lane, unit): values for lane, values in lanes.items()}
+        if over in variable.dims:
+            frame, unit = variable.to_pandas(), str(variable.attrs["units"])
+            lanes = {name: frame} if variable.ndim == 1 else frame.add_prefix(f"{name}_")
+            series |= {header_of(lane, unit): values for lane, values in lanes.items()}
     return pd.DataFrame(series)

@@ -517,8 +517,23 @@ def test_a_run_stops_and_another_goes_on(call, refused, tmp_path):
     assert "there is no such file" in refused(*words, tmp_path / "none.nc")
     assert "is no run that can go on" in refused(*words, __file__)
     assert "--initial is given too" in refused(*words, first, "--initial", "q=0")
-    no_place = refused(*drive, "--duration", "0.1", *found, "--out", "run.csv")
-    assert "'run.csv', a table over time, has no place for events" in no_place
+
+
+def test_events_are_in_a_table_beside_a_csv(call, tmp_path):
+    out = tmp_path / "run.csv"
+    found = ("--event", "on=V_in", "--event", "far=q - 5", "-i", "V_in=sine(100,100)")
+    answer = call("simulate", "piezo_stack", "--duration", "0.021", *found, "--out", out)
+    tables = [tmp_path / f"run_{name}.csv" for name in ("on", "far")]
+    assert answer.out.splitlines()[-1] == f"{out}; events: {tables[0]}, {tables[1]}"
+    with out.open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 1001
+    assert not any("_at_" in name for name in rows[0])
+    with tables[0].open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["on [s]"]) for row in rows] == pytest.approx([0.005, 0.01, 0.015, 0.02])
+    assert {"q_at_on [m]", "phi_at_on_1 [Wb]", "phi_at_on_2 [Wb]"} <= rows[0].keys()
+    assert len(tables[1].read_text().splitlines()) == 1  # never: the header alone
 
 
 def test_a_run_into_a_store_goes_on_from_it(call, tmp_path, monkeypatch):
