@@ -11,8 +11,11 @@ from rich.text import Text
 
 from piezo_sym.cli.junit import junit_xml
 from piezo_sym.cli.output import STYLES, about, console, print_table
-from piezo_sym.errors import ContradictionError, PiezoError, ProofError
+from piezo_sym.errors import ContradictionError, PiezoError, ProofError, legible
 from piezo_sym.files import write_text
+
+#: What is said of an input without effect.
+UNUSED = "no element uses it; name it in one, as input = '...', or leave it out"
 
 if TYPE_CHECKING:
     from piezo_sym.report import Report, Row
@@ -83,6 +86,7 @@ def _reports(
     from piezo_sym.build import PROOFS, report_and_files
     from piezo_sym.spec.load import of_file
     from piezo_sym.spec.source import find, read
+    from piezo_sym.spec.tables import unused_inputs
 
     reports: dict[str, Report] = {}
     proved: dict[str, tuple[str, str]] = {}
@@ -93,8 +97,11 @@ def _reports(
                 path = find(spec)
                 text = read(path)
                 model = of_file(path, text)
-                reports[spec], files = report_and_files(model)
                 flat = model.flatten()
+                reports[spec], files = report_and_files(model)
+                for name in unused_inputs(flat):
+                    line = f"{legible(path.name)}: inputs.{name}: {UNUSED}"
+                    typer.echo(f"piezo-sym: {line}", err=True)
                 own = text if flat is model else flat.to_toml()
                 proved[spec] = own, files[PROOFS.format(model.name)]
         except ContradictionError:

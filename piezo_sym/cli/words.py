@@ -5,6 +5,7 @@ inputs and states: ``L=1.2e-3`` is in SI, ``L=1.2mH`` in its own unit.  Output: 
 SI, or an error that names the option.
 """
 
+import json
 import re
 from collections.abc import Callable, Iterable
 from functools import cached_property
@@ -181,7 +182,8 @@ class Units:
 
     Attributes
     ----------
-    assumed : a line for each number that was read in SI, although its declared unit is another.
+    assumed : a line for each number that was read in SI, although its declared unit is another,
+        and for each input that no element uses.
     """
 
     def __init__(self, spec: str) -> None:
@@ -213,6 +215,11 @@ class Units:
 
     def signal(self, text: str, where: str) -> Any:
         """Return a signal, or a number, in its unit or SI."""
+        name = where.rpartition(" ")[2]
+        users = [self._content.get(table) for table in ("elements", "banks", "initial")]
+        used = re.search(rf"\b{re.escape(name)}\b", json.dumps(users, default=str))
+        if name in self._declared and not used:
+            self.assumed.append(f"{name}: no element uses this input")
         return signal(text, where, self._value)
 
     def _value(self, text: str, where: str, place: str) -> float:
@@ -237,6 +244,14 @@ class Units:
     @cached_property
     def _declared(self) -> dict[str, str]:
         """The unit of each parameter and input that has one in the spec."""
+        tables = (self._content.get(table) for table in ("parameters", "inputs"))
+        entries = {k: v for table in tables if isinstance(table, dict) for k, v in table.items()}
+        units = {k: v.get("unit") for k, v in entries.items() if isinstance(v, dict)}
+        return {name: unit for name, unit in units.items() if isinstance(unit, str)}
+
+    @cached_property
+    def _content(self) -> dict[str, Any]:
+        """The spec's tables; of one with components, with their elements."""
         from piezo_sym.spec.source import data, find, read
 
         with about(self._spec, SpecError):
@@ -245,10 +260,7 @@ class Units:
                 from piezo_sym.spec.load import load
 
                 content = load(self._spec).flatten().model_dump()
-        tables = (content.get(table) for table in ("parameters", "inputs"))
-        entries = {k: v for table in tables if isinstance(table, dict) for k, v in table.items()}
-        units = {k: v.get("unit") for k, v in entries.items() if isinstance(v, dict)}
-        return {name: unit for name, unit in units.items() if isinstance(unit, str)}
+        return content
 
     def _assume(self, where: str) -> None:
         from piezo_sym.expressions.units import parse_unit

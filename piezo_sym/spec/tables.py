@@ -161,6 +161,13 @@ def orders(spec: Tables, domain: Iterable[Condition]) -> Iterator[Condition]:
     yield from dict.fromkeys(tests)
 
 
+def unused_inputs(spec: Tables) -> list[str]:
+    """Return the inputs that no element names, and no initial value uses."""
+    used = {given for e in spec.elements.values() for _, given in e.named("input")}
+    used |= {word for _, tree in initial_laws(spec) for word in names(tree)}
+    return [name for name in spec.inputs if name not in used]
+
+
 def without_default(spec: Tables, words: Iterable[str]) -> str:
     """Return what to do about the first input among names that is 0 where none is given, or ''."""
     for word in words:

@@ -129,3 +129,19 @@ def test_a_ratio_of_another_unit_is_said_before_what_follows_from_it(call, tmp_p
         answer = call(*command)
         assert answer.code == 1
         assert f"gyrator.k: units is REFUTED: elements.k.{field}: {said}; expected" in answer.err
+
+
+def test_an_input_without_effect_is_a_line(call, spec_file):
+    spec = spec_file("[inputs]", '[inputs]\nV_3 = { unit = "kV" }\nS_0 = { unit = "J/K" }')
+    text = spec.read_text(encoding="utf-8").replace("c_0*log(T_e/T_0)", "S_0 + c_0*log(T_e/T_0)")
+    spec.write_text(text, encoding="utf-8")
+    answer = call("verify", spec)
+    said = "piezo-sym: mine.toml: inputs.V_3: no element uses it; "
+    assert answer.code == 0
+    assert answer.err.startswith(said)  # S_0 sets the start
+    assert len(answer.err.splitlines()) == 1
+    run = call(
+        "simulate", spec, "--duration", "1e-4", "-i", "V_3=2kV", "-i", "V_in=1", "-i", "S_0=0"
+    )
+    assert (run.code, run.err) == (0, "")
+    assert run.out.splitlines()[-1] == "V_3: no element uses this input"
