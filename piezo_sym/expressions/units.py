@@ -199,7 +199,7 @@ def _named(name: str, where: str, value: float | None, alone: bool = True, text:
         factor = Fraction(1) if si == name else Fraction(10) ** PREFIXES[prefix]
         powers = (*COHERENT[si], *(0,) * len(BASES))[: len(BASES)]
         return Unit(name, si, factor, tuple(map(Fraction, powers)))
-    if not any(root in UNITS for _, root, _ in _registry().parse_unit_name(name)):
+    if _root(name) not in UNITS:
         raise SpecError(f"unknown unit {quote(name)}", where, remedy=_meant(name, text))
     try:
         factor, base = _registry().get_base_units(name)
@@ -220,19 +220,40 @@ def _named(name: str, where: str, value: float | None, alone: bool = True, text:
     return Unit(name, _bare(name, Fraction(factor), dimension), Fraction(factor), dimension)
 
 
+def _root(name: str) -> str:
+    """Return pint's long name of a unit without its prefix; '' if there is none.
+
+    The plural of a symbol is none: Pas is meant for Pa*s.
+    """
+    one, many = (_registry().parse_unit_name(text) for text in (name.removesuffix("s"), name))
+    root = str(many[0][1]) if many else ""
+    return "" if name.endswith("s") and one[:1] == many[:1] and root not in name else root
+
+
 def _meant(name: str, text: str) -> str:
-    """Return what to write for an unknown name: N*s/m for Ns/m, else a similar name."""
-    cuts = ((name[:n], name[n:]) for n in range(1, len(name)))
-    two = next((f"{a}*{b}" for a, b in cuts if a in COMMON and b in COMMON), "")
-    text = re.sub(rf"/{name}(?![A-Za-z])", f"/({two})", text)
-    text = re.sub(rf"(?<![A-Za-z]){name}(?![A-Za-z])", two, text)
-    if two:
-        return f"write {quote(text or two)}"
+    """Return what to write for an unknown name: N*s/m for Ns/m, kV for KV, else a similar name."""
+    cuts = ((name[:n], name[n:]) for n in reversed(range(1, len(name))))
+    two = next((f"{a}*{b}" for a, b in cuts if _is_common(a) and _is_common(b)), "")
+    kilo = next((f"k{unit}" for unit in COMMON if name.lower() == f"k{unit}".lower()), "")
+    offers = [f"({two})" * bool(two)]
+    offers.insert(0, kilo if name.startswith("K") else "")
+    if said := [_put(text or name, name, offer) for offer in offers if offer]:
+        return f"write {', or '.join(map(quote, said))}"
     alike = _registry().parse_unit_name(name, case_sensitive=False)  # as mHenry
     for prefix, root, _ in (unit for unit in alike if unit[1] in UNITS):
         symbol = str(_registry().get_symbol(prefix + root)).translate(ASCII)
         return f"did you mean {quote(symbol)}?"
     return nearest(name, COMMON)
+
+
+def _is_common(name: str) -> bool:
+    return name in COMMON or (name[:1] in PREFIXES and name[1:] in COMMON)
+
+
+def _put(text: str, name: str, new: str) -> str:
+    """Return a unit's text with another for a name in it, in brackets only behind a /."""
+    text = re.sub(rf"/{name}(?![A-Za-z])", f"/{new}", text)
+    return re.sub(rf"(?<![A-Za-z]){name}(?![A-Za-z])", new.strip("()"), text)
 
 
 def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:

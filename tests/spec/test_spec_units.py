@@ -213,6 +213,14 @@ def test_texts_that_are_no_units(text):
         ("Nm", "unknown unit 'Nm'; write 'N*m'"),
         ("Ns/m", "unknown unit 'Ns'; write 'N*s/m'"),
         ("J/kgK", "unknown unit 'kgK'; write 'J/(kg*K)'"),
+        ("1/(Ns)", "unknown unit 'Ns'; write '1/(N*s)'"),
+        ("Pas", "unknown unit 'Pas'; write 'Pa*s'"),
+        ("mPas", "unknown unit 'mPas'; write 'mPa*s'"),
+        ("kNm", "unknown unit 'kNm'; write 'kN*m'"),
+        ("KOhm", "unknown unit 'KOhm'; write 'kohm'"),
+        ("KV", "unknown unit 'KV'; write 'kV', or 'K*V'"),
+        ("W/Km", "unknown unit 'Km'; write 'W/km', or 'W/(K*m)'"),
+        ("amps", "unknown unit 'amps'; did you mean 'A'?"),
     ],
 )
 def test_words_that_are_no_units(text, answer):
