@@ -59,16 +59,11 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
     couplings = [placed.element for placed, _ in couplings_in(laws, relation)]
     place = f" through {_quoted(couplings)}" if couplings else _place(laws, names)
     if len(names) == 1:
-        what = f"the {word} of {_quoted(names)} is forced to be zero{place}"
-        return NetworkError(what, "network", f"a free {word}", "connect it to other nodes")
-    fixed, taken = _unturnable(laws, edges), laws.circuit.names
-    both = ((e.placed, p) for e, p in zip(edges, ports, strict=True) if e.placed.bank)
-    many = (
-        p.element for p, port in both if isinstance(port, DissipativePort) and turn(port, taken)
-    )
-    if not why and (name := next(many, None)):
-        why = f", and '{name}' is of a bank, which has no law for all lanes together"
+        return _alone(laws, edges, word, place, bool(couplings))
+    fixed, why = _unturnable(laws, edges), why or _of_lanes(laws, edges)
     what = f"elements {_quoted(names)} fix each other's {word}{place}{why}"
+    if slips := _slipping(laws, edges):
+        return NetworkError(what, "network", *_behind_inductor(slips))
     node, mass = _massless(laws, edges)
     put = f"put {with_article(mass)} at '{node}'" if node else ""
     where = "which" if not why and place.endswith(f" '{node}'") else f"and node '{node}'"
@@ -77,7 +72,9 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
         expected, remedy = _inverse_law(*fixed[0])
         if node:
             return NetworkError(what, "network", f"one, or {expected}", f"{put}; or {remedy}")
-        if len(fixed) > 1:
+        if len(fixed) == len(edges) and word != MIXED:  # with one turned, they would make a loop
+            expected, remedy = "independent laws", _store_between(ports[0], _loose_end(laws, edges))
+        elif len(fixed) > 1:
             remedy = f"{remedy}; or {_separation(ports, word == MIXED)}"
         elif word != MIXED and not couplings:
             remedy = f"{remedy}; or {_store_between(ports[0])}"
@@ -90,6 +87,55 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
         return NetworkError(what, "network", "a current that is free", remedy)
     remedy = _separation(ports, word == MIXED or bool(couplings))
     return NetworkError(what, "network", "independent storage and sources", remedy)
+
+
+def _of_lanes(laws: Laws, edges: list[Edge]) -> str:
+    """Return why a linear law among branches is not turned round: it is of a bank; or ''."""
+    for placed, port in ((edge.placed, _port(edge)) for edge in edges if edge.placed.bank):
+        if isinstance(port, DissipativePort) and turn(port, laws.circuit.names):
+            bank = f"'{placed.element}' is of a bank"
+            return f", and {bank}, which has no law for all lanes together"
+    return ""
+
+
+def _alone(laws: Laws, edges: list[Edge], word: str, place: str, coupled: bool) -> NetworkError:
+    """Return the error of one element, or of the lanes of one bank, that nothing lets move."""
+    placed, expected, remedy = edges[0].placed, f"a free {word}", "connect it to other nodes"
+    what = f"the {word} of '{placed.element}' is forced to be zero{place}"
+    if placed.bank and not coupled and _port(edges[0]).imposes is ACROSS:
+        what = f"the lanes of '{placed.element}' fix each other's {word}{place}"
+        remedy = _separation([_port(edges[0])], mixed=False).partition(", or ")[2]
+        if slips := _slipping(laws, edges):
+            expected, remedy = _behind_inductor(slips)
+        remedy += ", in each lane"
+    return NetworkError(what, "network", expected, remedy)
+
+
+def _slipping(laws: Laws, edges: list[Edge]) -> list[Edge]:
+    """Return the capacitors among branches that slip, as stops do: no resistor sets them free."""
+    slips = {port.state for _, port in laws.circuit.of(DissipativePort) if port.rate}
+    given = [(edge, _port(edge)) for edge in edges]
+    stores = [(edge, port) for edge, port in given if isinstance(port, Storage)]
+    return [edge for edge, port in stores if port.state in slips and port.imposes is ACROSS]
+
+
+def _behind_inductor(slips: list[Edge]) -> tuple[str, str]:
+    """Return the expectation and the remedy for capacitors that slip."""
+    domain = _port(slips[0]).domain
+    inductor = with_article(kind_of("store", domain, THROUGH).name)
+    names = _quoted([edge.placed.element for edge in slips])
+    free = f"a {domain.through.name} of {names} that is a state's, or an input"
+    return free, f"put {inductor} in series with {names}"
+
+
+def _loose_end(laws: Laws, edges: list[Edge]) -> str:
+    """Return the first node of branches that no given ties to a reference, or ''."""
+    tied = {node for edge in laws.edges for node in edge.branch if is_reference(node)}
+    across = [edge.branch for edge in laws.edges if edge.imposes is ACROSS]
+    while more := {n for pair in across if tied & {*pair} for n in pair} - tied:
+        tied |= more
+    ends = (node for edge in edges for node in edge.branch)
+    return next((node for node in ends if node not in tied and not is_inner(node)), "")
 
 
 def _massless(laws: Laws, edges: list[Edge]) -> tuple[str, str]:
@@ -132,15 +178,16 @@ def _separation(ports: list[Imposing], mixed: bool) -> str:
     return f"merge those in series into one, or {_store_between(ports[0])}"
 
 
-def _store_between(port: Imposing) -> str:
-    """Return the advice to put a store between two that give the variable of a port."""
+def _store_between(port: Imposing, node: str = "") -> str:
+    """Return the advice to put a store between two that give the variable of a port, at a node."""
     domain = port.domain
     store = with_article(kind_of("store", domain, port.imposes.other).name)
     if port.imposes is ACROSS:
         where = "between them" if domain.mechanical else "in series with one of them"
     else:
-        where = "at the node between them"
-        where = where if domain.mechanical else f"between their node and '{domain.reference}'"
+        end = f"'{node}'" if node else "their node"
+        where = f"at {end}" if node else "at the node between them"
+        where = where if domain.mechanical else f"between {end} and '{domain.reference}'"
     return f"put {store} {where}"
 
 

@@ -1,5 +1,7 @@
 """Elements that fix each other: each refusal names them and says what to put where."""
 
+import re
+
 import pytest
 from drawing import (
     BODY,
@@ -180,10 +182,74 @@ CAUSALITY = {
     ),
     "two nonlinear resistors in series across a capacitor": (
         resistor("R1", "a", "n", **CUBIC) + resistor("R2", "n", "gnd", **CUBIC) + LC,
-        "elements 'R1', 'R2' fix each other's current at node 'n'",
-        "put a capacitor between their node and 'gnd'",
+        "elements 'R1', 'R2' fix each other's current at node 'n'; expected independent laws",
+        "put a capacitor between 'n' and 'gnd'",
     ),
 }
+
+
+def stop(name, *nodes, **more):
+    law = {"capacitance": "C", "limit": "a", "heats": "body", **more}
+    return line(name, "stop", between=[*nodes], **law)
+
+
+DIODE = {"current": "c*(exp(v/R) - 1)"}
+#: What one step of advice has to mend.
+AT_ONCE = {
+    "a bridge of diodes": (
+        current("s", "p", "n")
+        + capacitor("C1", "p", "n")
+        + resistor("d1", "p", "out", **DIODE)
+        + resistor("d2", "n", "out", **DIODE)
+        + resistor("d3", "gnd", "p", **DIODE)
+        + resistor("d4", "gnd", "n", **DIODE)
+        + capacitor("C2", "out", "gnd"),
+        "elements 'd1', 'd2', 'd3', 'd4' fix each other's current; expected independent laws; put "
+        "a capacitor between 'p' and 'gnd'",
+    ),
+    "two nonlinear resistors": (
+        resistor("R1", "a", "n", **CUBIC) + resistor("R2", "n", "gnd", **CUBIC) + LC,
+        "put a capacitor between 'n' and 'gnd'",
+    ),
+    "a stop beside a capacitor": (
+        stop("z", "a", "gnd") + LC,
+        "'z', 'C1' fix each other's voltage at node 'a', and 'z' slips; expected a current of 'z' "
+        "that is a state's, or an input; put an inductor in series with 'z'",
+    ),
+    "a stop across a source": (
+        stop("z", "a", "gnd") + voltage("s", "a", "gnd"),
+        "put an inductor in series with 'z'",
+    ),
+    "two stops": (
+        stop("z", "a", "gnd") + stop("y", "a", "gnd") + inductor("L1", "a", "gnd"),
+        "put an inductor in series with 'z', 'y'",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "said"), AT_ONCE.values(), ids=AT_ONCE)
+def test_one_remedy_is_enough(text, said):
+    message = str(refused(text))
+    assert message.endswith(said)
+    if found := re.search("put a capacitor between '(.)' and 'gnd'", message):
+        text += capacitor("C_x", found[1], "gnd")
+    for name in re.findall("'(.)'", message.partition("in series with ")[2]):
+        text = text.replace(
+            f"{name} = {{ kind = \"stop\", between = ['a'",
+            f"{name} = {{ kind = \"stop\", between = ['{name}_in'",
+        )
+        text += inductor(f"L_{name}", "a", f"{name}_in")
+    assert derive(parse(spec(text))).x
+
+
+def test_stops_in_lanes_that_share_a_voltage_are_told_so():
+    cell = "[banks.many]\ncount = 3\n[banks.many.elements]\n"
+    first = LC + BODY + cell
+    said = str(refused(first + stop("z", "a", "gnd")))
+    assert "network: the lanes of 'many_z' fix each other's voltage at node 'a'; expected" in said
+    assert said.endswith("put an inductor in series with 'many_z', in each lane")
+    assert derive(parse(spec(first + stop("z", "b", "gnd") + inductor("L_z", "a", "b")))).x
+
 
 TIED = CONFLICTS | CAUSALITY
 
