@@ -9,8 +9,9 @@ fault.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import islice
 from typing import final
 
 from piezo_sym.errors import quote, with_article
@@ -24,7 +25,20 @@ from piezo_sym.expressions.dimensions import (
     times,
 )
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, Expr, Mul, Neg, Node, Num, Sym, names, walk
+from piezo_sym.expressions.tree import (
+    Add,
+    Cmp,
+    Div,
+    Expr,
+    Mul,
+    Neg,
+    Node,
+    Num,
+    Sym,
+    names,
+    replaced,
+    walk,
+)
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.iphs import IPHS
 from piezo_sym.report import Row, Verdict
@@ -39,6 +53,8 @@ from piezo_sym.spec.unit_text import quantity, unit_text
 STATEMENT = "every term of every equation has its row's unit"
 MOST_TERM = 60
 MOST_CANDIDATES = 3
+#: Other forms of a law that are tried.
+MOST_RESPELLED = 100
 
 
 @final
@@ -172,6 +188,8 @@ def _fitting(name: str, checks: Iterable[Check]) -> Dimension | None:
 def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
     """Return what to change where no one parameter's unit would mend the fault."""
     rule, words = fault.rule, fault.place.words
+    if regrouped := _regrouped(fault):
+        return regrouped
     for part, other in ((rule.right, rule.left), (rule.left, rule.right)):
         if part is not None and not names(part):
             unit = rule.needed if other is None else dimension(other, words)
@@ -186,6 +204,32 @@ def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
     part, size = rule.right or rule.left, times(NONE, fault.gap, -1)
     verb = "divide" if rule.right is None else "multiply"
     return f"{verb} {fault.text(part)} by {quantity(size)}{_numbers(fault, part)}"
+
+
+def _regrouped(fault: Check) -> str:
+    """Return a law with a bracket more, or a division, with which all units fit, or ''."""
+    place, tree = fault.place, fault.place.tree
+    if isinstance(tree, Cmp):
+        return ""
+    for old, new in islice(_respelled(tree), MOST_RESPELLED):
+        law = replace(place, tree=replaced(tree, {old: new}))
+        if len(spell(new)) <= MOST_TERM and not faults(law.rules(), place.words):
+            return f"write {fault.text(new)} for {fault.text(old)}"
+    return ""
+
+
+def _respelled(tree: Expr) -> Iterator[tuple[Expr, Expr]]:
+    """Yield parts of a law with what may be meant: a*(b + c) for a*b + c, a/b or b/a for a*b."""
+    for node in walk(tree):
+        match node:
+            case Add(terms):
+                for n, term in enumerate(terms[:-1]):
+                    if isinstance(term, Mul):
+                        inner = Mul(term.left, Add((term.right, *terms[n + 1 :])))
+                        yield node, Add((*terms[:n], inner)) if n else inner
+            case Mul(left, right):
+                yield node, Div(left, right)
+                yield node, Div(right, left)
 
 
 def _factor(term: Expr | None) -> Num | None:

@@ -122,7 +122,7 @@ def _new_store(store: object) -> Path:
 def _timed(
     run: xarray.Dataset, events: Iterable[str] | None, hits: list[xarray.Dataset]
 ) -> xarray.Dataset:
-    """Return a window without its events, which go to `hits`; a run that is interrupted has none."""
+    """Return a window without its events, which go to `hits`; one that is interrupted has none."""
     of_events = {*(events or ())} & {*run.dims}
     if of_events:
         hits.append(run[[name for name in run.data_vars if of_events & {*run[name].dims}]])

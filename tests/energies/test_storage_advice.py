@@ -170,3 +170,32 @@ def test_a_state_by_its_letter_is_told_its_symbol():
     said = refusal(SPEC.replace('"R*i"', '"R*i*(1 + (q/x_0)**2)"'))
     assert "'q' has no meaning here" in said
     assert said.endswith("states go by their own symbols: x")
+
+
+TWINS = """
+beside = { kind = "spring", between = ["tip", "wall"], force = "k*max(x - x_0, 0)", state = "y" }
+"""
+
+
+def test_a_state_that_moves_as_its_own_is_told_its_own_name():
+    said = refusal(SPEC + TWINS)
+    assert said.endswith("write q for x: it has the same rate between the same nodes")
+    assert derive(parse(SPEC + TWINS.replace("x - x_0", "q - x_0"))).x
+    turned = refusal(SPEC + TWINS.replace('"tip", "wall"', '"wall", "tip"'))
+    assert "give one energy of all their states in place of" in turned  # it moves the other way
+    shared = (
+        SPEC + 'more = { kind = "capacitor", between = ["b", "gnd"], voltage = "Q_2*Q/C_0/q_0" }\n'
+    )
+    shared = shared.replace('state = "Q"', 'state = "Q_2"')
+    assert "give one energy of all" in refusal(shared)  # in parallel, each has a charge of its own
+
+
+def test_a_limit_that_changes_is_told_to_be_a_parameter():
+    dry = 'dry = { kind = "stop", between = ["tip", "wall"], stiffness = "k", limit = "LIMIT", '
+    text = SPEC + dry + 'heats = "body", state = "z" }\n'
+    said = refusal(text.replace("LIMIT", "k*x_0*T/T_0"))
+    assert said.endswith(
+        "the limit depends on 'T'; expected parameters alone: it is constant in a run; write "
+        "limit = 'a', a parameter in N"
+    )
+    assert parse(text.replace("LIMIT", "k*x_0"))

@@ -19,6 +19,7 @@ SECOND = (
     '[elements.mount]\nkind = "thermal_mass"\ntemperature = "T_0*exp(S/c_0)"\n\n[elements.load]'
 )
 PART = '[elements.extra]\nkind = "{}"\n{}\n\n[elements.load]'
+BRANCH = 'between = ["tip", "wall"]\n'
 
 MISTAKES = {
     "an input that is not declared, of an ambient": ('input = "T_e"', 'input = "T_room"'),
@@ -59,6 +60,26 @@ MISTAKES = {
     ),
     "an initial state by its element": ('S = "c_0', 'body = "c_0'),
     "an initial state almost right": ('S = "c_0', 's = "c_0'),
+    "the letter of a law in the other case": (
+        'stiffness = "k"',
+        'stiffness = "k*(1 + (Q/s_0)**2)"',
+    ),
+    "a letter of a resistance in the other case": ("deadzone(i, i_0)", "deadzone(I, i_0)"),
+    "a state that moves as its own": (
+        "[elements.load]",
+        PART.format("spring", f'{BRANCH}force = "k*(q_2 - q_l)"')
+        .replace(
+            "[elements.load]", PART.format("spring", f'{BRANCH}stiffness = "k"\nstate = "q_2"')
+        )
+        .replace("extra", "other", 1),
+    ),
+    "a limit that is warm": (
+        "[elements.load]",
+        PART.format("stop", f'{BRANCH}stiffness = "k"\nlimit = "k*q_l*T/T_0"\nheats = "body"'),
+    ),
+    "kilo in a capital": ('unit = "ohm*K"', 'unit = "KOhm*K"'),
+    "a lost bracket": ('ratio = "a*T/T_0"', 'ratio = "a*(1 + 1/T_0*T - T_0)"'),
+    "a product for a quotient": ('"c_0*log(T_e/T_0)"', '"c_0*log(T_e*T_0)"'),
     "a table almost right": ("[elements.spring]", "[element.spring]"),
     "a key twice": ('stiffness = "k"', 'stiffness = "k"\nstiffness = "k"'),
     "a quoted key twice": ('stiffness = "k"', '"stiffness" = "k"\n"stiffness" = "k"'),
@@ -108,6 +129,16 @@ def mend(text: str, message: str) -> str:
         before, table, own = text.partition(f"[elements.{found[1]}]")
         old, new = (f"{key} = {nodes[key]}" for key in found.groups()[1:])
         return before + table + own.replace(old, new, 1)
+    if found := re.search(r"write (\w+) for (\w+): it has the same rate", message):
+        return text.replace(f"({found[2]} - q_l)", f"({found[1]} - q_l)")
+    if found := re.search(r"write (limit = )'a', a parameter in N$", message):
+        text = re.sub(rf'{found[1]}".*"', f'{found[1]}"F_c"', text)
+        return text.replace("[inputs]", 'F_c = { value = 1.0, unit = "N" }\n[inputs]', 1)
+    if found := re.search(r"unknown unit '(\w+)'; write '(\w+)", message):
+        return text.replace(found[1], found[2])
+    if found := re.search(r"; write (.*) for (.*)$", message):
+        assert found[2] in text
+        return text.replace(found[2], found[1])
     if found := re.search(r"calls '(\w+)', .*did you mean '(\w+)'", message):
         return text.replace(found[1], found[2])
     if found := re.search(r"'([\w ]+)'[^;]*(?:;.*)?; did you mean '(\w+)'\?", message):

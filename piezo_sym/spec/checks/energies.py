@@ -27,6 +27,7 @@ from piezo_sym.expressions.tree import (
     replace,
     walk,
 )
+from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.fields import Tables
@@ -64,15 +65,47 @@ def _check_law(
     found = {word: other for word, other in found.items() if other != law.element}
     if not found:
         return
-    words, own = " and ".join(map(quote, found)), " and ".join(law.letters) or "its own state"
-    what = f"the {law.field} depends on {words}, and then is no energy of {own}"
-    remedy, parts = ALONE, tuple(dict.fromkeys((law.element, *found.values())))
-    if all(parts) and sum(spec.elements[part].is_body for part in parts) < 2:
+    words, own = " and ".join(map(quote, found)), " and ".join(law.letters)
+    what, remedy = f"the {law.field} depends on {words}", ALONE
+    parts = tuple(dict.fromkeys((law.element, *found.values())))
+    single = all(parts) and sum(spec.elements[part].is_body for part in parts) < 2
+    storage = _storage(spec, parts, hot) if single else ""
+    if not own and not storage:
+        remedy = f"write {law.field} = 'a', a parameter in {law.mark.unit}"
+        raise SpecError(what, law.where, "parameters alone: it is constant in a run", remedy)
+    if alike := _same_motions(spec, law.element, found):
+        meant = ", ".join(f"{other} for {word}" for word, other in alike.items())
+        remedy = f"write {meant}: it has the same rate between the same nodes"
+    elif single:
         given = f"{listing(map(quote, parts[:-1]))} and {quote(parts[-1])}"
-        storage = _storage(spec, parts, hot)
         remedy = f"give one energy of all their states in place of {given}: {storage}"
         remedy = remedy if storage else f"{APART}; or {ALONE}"
+    what += f", and then is no energy of {own or 'its own state'}"
     raise SpecError(what, law.where, "an energy of all states that it depends on", remedy)
+
+
+def _same_motions(spec: Tables, name: str, found: Mapping[str, str]) -> dict[str, str]:
+    """Return what an element calls states of others that move as its own; {} unless all do.
+
+    `found` has the elements of the others.
+    """
+    own = {place: state for state, place in motions(spec, name).items()}
+    moved = {
+        word: motions(spec, other).get(word) if other else None for word, other in found.items()
+    }
+    if not all(place in own for place in moved.values()):
+        return {}
+    letter = spec.elements[name].letter
+    return {word: letter or own[place] for word, place in moved.items() if place}
+
+
+def motions(spec: Tables, name: str) -> dict[str, object]:
+    """Return the branch whose across variable each state of an element is the integral of.
+
+    Of stores in parallel, these states move alike; charges and momenta do not.
+    """
+    ports = (port for port in spec.elements[name].ports(name) if isinstance(port, Storage))
+    return {p.state: p.branch for p in ports if p.imposes is PowerVariable.THROUGH}
 
 
 def _storage(spec: Tables, parts: tuple[str, ...], hot: Mapping[str, str]) -> str:

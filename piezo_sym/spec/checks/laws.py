@@ -193,6 +193,8 @@ def _check_words(
             if (sight := {*seen(spec)}) <= {*words}:
                 expected += f"{'' if element else ', inputs'}, states and temperatures"
                 expected += f": {listing(seen(spec))}" * bool(letters and sight)
+            if other := next((own for own in letters if own.lower() == word.lower()), ""):
+                remedy = f"did you mean {quote(other)}?"
             if not remedy:
                 known = {*words, *states(spec)} if element else words
                 remedy = _states_of_letter(spec, word, known)
