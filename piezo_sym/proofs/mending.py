@@ -14,10 +14,26 @@ from functools import cache, reduce
 from itertools import combinations
 
 from piezo_sym.errors import STICKING
-from piezo_sym.expressions.calculus import add, mul
+from piezo_sym.expressions.calculus import add, mul, power
 from piezo_sym.expressions.exact_eval import all_hold
+from piezo_sym.expressions.reflection import reflected
+from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tidying import tidied
-from piezo_sym.expressions.tree import ONE, ZERO, Add, Call, Cmp, Expr, Neg, Num, Sym, names
+from piezo_sym.expressions.tree import (
+    ONE,
+    ZERO,
+    Add,
+    Call,
+    Cmp,
+    Expr,
+    Neg,
+    Num,
+    Pow,
+    Sym,
+    names,
+    replaced,
+    walk,
+)
 from piezo_sym.iphs import IPHS
 from piezo_sym.network import slope_of
 from piezo_sym.proofs.branches import Branch, TooManyBranchesError, branches
@@ -35,6 +51,7 @@ from piezo_sym.proofs.shortening import (
 )
 from piezo_sym.proofs.signs.cases import summands
 from piezo_sym.proofs.signs.reduce import Positive
+from piezo_sym.spec.elements.ports import DissipativePort
 from piezo_sym.spec.tables import condition_text
 
 #: What to write for a law that jumps, as the end of a reason.
@@ -92,9 +109,42 @@ def mending_conditions(
         rest = tuple(c for c in conditions if c != claim)
         conditions = rest if rest and mended(rest) else conditions
     if not conditions:
-        return ""
+        return _signed(sign.law, sign.letter, shown)
     broken = [c for c in conditions for p in points if all_hold((c,), p) is False]
     return in_words([condition_text(sided(c)) for c in conditions], broken, iphs)
+
+
+def signed_roots(element: str, iphs: IPHS) -> str:
+    """Return what to write for a root of the letter, which has no value below 0, or ''."""
+    for placed, port in iphs.circuit.of(DissipativePort):
+        v = Sym(port.letter)
+        for root in walk(port.law) if placed.element == element else ():
+            match root:
+                case Call("sqrt", (arg,)) if isinstance(reflected(arg, v.name), Neg):
+                    signed = mul(Call("sign", (v,)), replaced(root, {v: Call("abs", (v,))}))
+                    return f"; for both signs of {v.name}, {_instead(signed, root)}"
+    return ""
+
+
+def _signed(law: Expr, letter: str, shown: Shown) -> str:
+    """Return what to write for an even power of the letter so that a law takes power in, or ''."""
+    v = Sym(letter)
+    for part in walk(law):
+        match part:
+            case Pow(base, e) if base == v and e % 2 == 0:
+                signed = mul(power(v, e - 1), Call("abs", (v,)))
+            case Call("abs", (arg,)) if arg == v:
+                signed = v
+            case _:
+                continue
+        turned = replaced(law, {part: signed})
+        if shown(turned, letter) or _of_factor(turned, letter, shown):
+            return f"; {_instead(signed, part)}, whose sign is not that of {letter}"
+    return ""
+
+
+def _instead(new: Expr, old: Expr) -> str:
+    return f"write {spell(new)} for {spell(old)}"
 
 
 def _ways(

@@ -17,7 +17,7 @@ from piezo_sym.proofs.asked import DomainOracle, moved_counterexample, simple_co
 from piezo_sym.proofs.conditions import domain_conditions
 from piezo_sym.proofs.continuity import neighbour_questions
 from piezo_sym.proofs.domain import rounded_points
-from piezo_sym.proofs.mending import mending_conditions
+from piezo_sym.proofs.mending import mending_conditions, signed_roots
 from piezo_sym.proofs.obligations import Obligation, Question, Residual, SignOf
 from piezo_sym.proofs.refutation import (
     Finding,
@@ -252,6 +252,8 @@ def _mended_by(found: Finding, obligation: Obligation, iphs: IPHS, solver: Solve
             lambda q: _failure(q, solver) is not None,
             lambda o: _decide(o, iphs, (), solver)[0].verdict is Verdict.PROVED,
         )
+    if refuted and obligation.id == "welldef":
+        conditions = signed_roots(obligation.element, iphs)
     if found.remedy or (refuted and obligation.id in DECLARED):
         conditions += _domain_conditions(obligation, iphs, solver)
     return conditions or (f"; {found.remedy}" if found.remedy else "")

@@ -105,6 +105,36 @@ def test_the_conditions_that_mend_a_row_do(name):
     assert not unproved(text)
 
 
+SIGNED = {
+    "R*i**2/i_s": "write i*abs(i) for i**2, whose sign is not that of i",
+    "R*abs(i)": "write i for abs(i), whose sign is not that of i",
+    "R*i*(i/i_s)**3 + R*i**4/i_s**3": "write i**3*abs(i) for i**4, whose sign is not that of i",
+    "R*sqrt(i_s)*sqrt(i)": "for both signs of i, write sign(i)*sqrt(abs(i)) for sqrt(i)",
+    "R*i_s*sqrt(2*i/i_s)": "both signs of i, write sign(i)*sqrt(2*abs(i)/i_s) for sqrt(2*i/i_s)",
+}
+
+
+@pytest.mark.some(2)
+@pytest.mark.parametrize("law", SIGNED)
+def test_a_law_that_loses_the_sign_of_its_letter_is_told_the_one_that_does_not(law):
+    text = assuming(SPEC, '"i_s > 0"')
+    (said,) = (
+        found[0]
+        for row in unproved(text.replace("R*i", law))
+        if (found := re.search(r"write .* for [^,;]*", row.reason))
+    )
+    assert said in SIGNED[law]
+    new, old = re.match("write (.*) for (.*)", said).groups()
+    assert not unproved(text.replace("R*i", law.replace(old, new)))
+
+
+@pytest.mark.parametrize(
+    "law", ["R*i*abs(i) - F_c*R/T_0", "R*i*sqrt(1 - (i/i_s)**2)", "R*i**2*abs(i)*i/i_s**3 - R*i"]
+)
+def test_no_other_sign_is_offered_that_does_not_mend_a_law(law):
+    assert not any("; write " in row.reason for row in unproved(SPEC.replace("R*i", law)))
+
+
 @pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("old", "new", "left_out"),
