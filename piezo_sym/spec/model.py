@@ -19,8 +19,8 @@ from pydantic import PrivateAttr, ValidationError, model_validator
 
 from piezo_sym.errors import PiezoError, SpecError, quote
 from piezo_sym.spec.checks.energies import check_energies
-from piezo_sym.spec.checks.laws import check_laws, check_references, check_texts
-from piezo_sym.spec.checks.names import check_names
+from piezo_sym.spec.checks.laws import check_laws, check_references
+from piezo_sym.spec.checks.names import check_names, check_texts
 from piezo_sym.spec.checks.values import check_values
 from piezo_sym.spec.fields import Included, Tables
 from piezo_sym.spec.flatten import flattened

@@ -73,6 +73,7 @@ class Origins:
         """Write the places in an error as they were written."""
         for part in ("what", "where", "expected", "remedy"):
             setattr(error, part, self.written(getattr(error, part)))
+        error.__notes__ = [self.written(note) for note in getattr(error, "__notes__", ())]
 
     def _within(self, where: str) -> tuple[Within, ...]:
         row = PLACE.match(where)

@@ -1,4 +1,4 @@
-"""Field faults, a line each: pydantic's list of errors to one `SpecError` with notes.
+"""Faults of a spec, a line each: pydantic's list of errors to one `SpecError` with notes.
 
 Input: a `ValidationError` and the data it is about.  Output: the first fault, with its place as a
 dotted path, what was expected there and, for unknown words, the nearest known one; and as many
@@ -6,7 +6,8 @@ lines of the same kind, its notes, as there are other faults.
 """
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from typing import Any, get_args
 
 from pydantic import ValidationError
@@ -56,12 +57,34 @@ def all_problems(error: ValidationError, spec: Mapping[str, Any]) -> SpecError:
         for d in details
         if d["type"] != "missing" or d["loc"] not in meant
     )
-    problem, *others = {str(fault): fault for fault in found}.values()
+    return together({str(fault): fault for fault in found}.values())
+
+
+def together(faults: Iterable[SpecError]) -> SpecError:
+    """Return the first of some errors; all others are its notes."""
+    problem, *others = faults
     for other in others[: MOST_FAULTS - 1]:
         problem.add_note(str(other))
     if more := len(others[MOST_FAULTS - 1 :]):
         problem.add_note(f"{more} more fault{'s' * (more > 1)} in this spec")
     return problem
+
+
+@contextmanager
+def all_faults() -> Iterator[Callable[[], AbstractContextManager[None]]]:
+    """Raise errors together at the end; in what is yielded each is kept, one about each thing."""
+    faults: dict[str, SpecError] = {}
+
+    @contextmanager
+    def kept() -> Iterator[None]:
+        try:
+            yield
+        except SpecError as error:
+            faults.setdefault(error.what, error)
+
+    yield kept
+    if faults:
+        raise together(faults.values())
 
 
 def _left(detail: ErrorDetails, spec: Mapping[str, Any]) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ import pytest
 from spec_tools import SHIPPED, edited_text, refusal, refused_edit
 
 from piezo_sym import Model
+from piezo_sym.errors import SpecError
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import data
 
@@ -260,3 +261,47 @@ def test_a_misspelled_key_is_not_taken_for_one_that_the_element_has():
     text = SHIPPED + f'\n[elements.motor]\nkind = "motor"\n{more}'
     message = refusal(parse, text).lines()[0]
     assert message.endswith("unknown key 'mechnical'; known: translation, rotation")
+
+
+FAULTS = {
+    "units": ({'unit = "kg"': 'unit = "kgg"', 'unit = "F"': 'unit = "Farads"'}, ["M", "C"]),
+    "texts": ({'"d*v"': '"d v"', '"k"': '"k +"'}, ["spring", "damper"]),
+    "references": (
+        {'heats = "body"': 'heats = "boy"', 'input = "V_in"': 'input = "V"'},
+        ["boy", "'V'"],
+    ),
+    "laws": ({'"d*v"': '"D_1*v"', '"k"': '"K_1"', '"c_0*log': '"C_2*log'}, ["K_1", "D_1", "C_2"]),
+    "a name twice": ({'"d*v"': '"K_1*v"', '"k"': '"K_1"'}, ["K_1"]),
+}
+
+
+@pytest.mark.parametrize(("edits", "words"), FAULTS.values(), ids=FAULTS)
+def test_all_faults_of_one_sort_are_said_at_once(edits, words):
+    text = SHIPPED
+    for old, new in edits.items():
+        assert old in text
+        text = text.replace(old, new)
+    with pytest.raises(SpecError) as caught:
+        parse(text, "mine.toml")
+    lines = caught.value.lines()
+    assert len(lines) == len(words)
+    for line, word in zip(lines, words, strict=True):
+        assert line.startswith("mine.toml: ")
+        assert word in line
+
+
+CELLS = """
+[banks.creep]
+count = 2
+[banks.creep.elements]
+slow = { kind = "spring", between = ["tip", "inside"], stiffness = "k_1" }
+loss = { kind = "damper", between = ["inside", "wall"], force = "d_1*v", heats = "body" }
+"""
+
+
+def test_faults_in_cells_have_their_own_places():
+    with pytest.raises(SpecError) as caught:
+        parse(SHIPPED + CELLS)
+    places = [line.partition(": unknown name")[0] for line in caught.value.lines()]
+    start = "spec: banks.creep.elements"
+    assert places == [f"{start}.slow.stiffness", f"{start}.loss.force"]

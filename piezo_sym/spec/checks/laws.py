@@ -1,4 +1,4 @@
-"""References and laws of a spec: names in them exist, and texts are of the law language."""
+"""References and laws of a spec: the names in them exist."""
 
 from collections import ChainMap
 from collections.abc import Collection, Mapping
@@ -6,7 +6,6 @@ from contextlib import suppress
 
 from piezo_sym.errors import SpecError, listing, nearest, quote
 from piezo_sym.expressions.incomplete import CONSTANTS
-from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Mul, Node, Num, Sym, names, walk
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS, LETTERS
@@ -15,6 +14,7 @@ from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import NAME
+from piezo_sym.spec.problems import all_faults
 from piezo_sym.spec.tables import (
     Condition,
     bank_of,
@@ -24,7 +24,6 @@ from piezo_sym.spec.tables import (
     condition_text,
     conditions,
     initial_laws,
-    laws,
     meanings,
     orders,
     seen,
@@ -36,25 +35,22 @@ from piezo_sym.spec.tables import (
 Cells = dict[str, dict[str, None]]
 
 
-def check_texts(spec: Tables) -> None:
-    """Check that each law can be parsed; later errors could not name its place."""
-    for law in laws(spec):
-        parse_law(law.text, law.where)
-
-
 def check_references(spec: Tables) -> None:
     """Check that there are elements, and that inputs and bodies they name are declared."""
     if not spec.elements:
         raise SpecError("has no elements", "elements", "at least one", f"kinds: {listing(KINDS)}")
     known = {"thermal_mass": dict.fromkeys(bodies(spec)), "input": spec.inputs}
-    for name, element in spec.elements.items():
-        for to, field, given in ((role, *row) for role in known for row in element.named(role)):
-            where = f"elements.{name}.{field}"
-            if given not in known[to]:
-                raise _unknown_reference(where, to, given, tuple(known[to]), spec, element)
-            if getattr(element, field) == (given, given):
-                what, remedy = f"both ends are at body {quote(given)}", "name another thermal_mass"
-                raise SpecError(what, where, "two different bodies", remedy)
+    with all_faults() as kept:
+        for name, element in spec.elements.items():
+            for to, field, given in ((role, *row) for role in known for row in element.named(role)):
+                where = f"elements.{name}.{field}"
+                with kept():
+                    if given not in known[to]:
+                        raise _unknown_reference(where, to, given, tuple(known[to]), spec, element)
+                    if getattr(element, field) == (given, given):
+                        what = f"both ends are at body {quote(given)}"
+                        remedy = "name another thermal_mass"
+                        raise SpecError(what, where, "two different bodies", remedy)
 
 
 def _unknown_reference(
@@ -91,24 +87,35 @@ WRITTEN = CONSTANTS | dict.fromkeys(("t", "time"), DRIVEN)
 
 def check_laws(spec: Tables) -> None:
     """Parse every law, initial value and condition, and check the names in them."""
-    one_body = len(bodies(spec)) == 1
     hot = {body: word for word, body in temperatures(spec).items()}
     every, owners, cells = dict.fromkeys((*spec.parameters, *seen(spec))), bank_of(spec), Cells()
     for symbol, bank in bank_states(spec).items():
         cells.setdefault(bank, {})[symbol] = None
-    for name, element in spec.elements.items():
-        own = {state_symbol(element, name): None} if element.letter else {}
-        own |= cells.get(owners.get(name, ""), {})  # the states of this lane
-        for law in element.laws(name):
-            words: Collection[str] = ChainMap(own, every) if law.mark.sees else spec.parameters
-            _check_words(spec, law.tree, law.where, law.letters, words, name)
-            warm = "T" in law.letters and "T" in names(law.tree)
-            if warm and not one_body and not any(element.named("thermal_mass")):
-                remedy = "add to the element: temperature = '<name of a thermal_mass>'"
-                what = "'T' is the temperature of no body"
-                raise SpecError(what, law.where, "a body named", remedy)
-            _check_letters(law, words, meanings(spec, law, hot))
-    _check_initial(spec)
+    with all_faults() as kept:
+        for name, element in spec.elements.items():
+            own = {state_symbol(element, name): None} if element.letter else {}
+            own |= cells.get(owners.get(name, ""), {})  # the states of this lane
+            for law in element.laws(name):
+                words: Collection[str] = ChainMap(own, every) if law.mark.sees else spec.parameters
+                with kept():
+                    _check_law(spec, law, words, hot)
+        with kept():
+            _check_initial(spec)
+    _check_domain(spec)
+
+
+def _check_law(spec: Tables, law: LawField, words: Collection[str], hot: Mapping[str, str]) -> None:
+    """Check the names in a law, which knows `words`; `hot` has the temperature of each body."""
+    _check_words(spec, law.tree, law.where, law.letters, words, law.element)
+    warm = "T" in law.letters and "T" in names(law.tree)
+    if warm and len(hot) != 1 and not any(spec.elements[law.element].named("thermal_mass")):
+        remedy = "add to the element: temperature = '<name of a thermal_mass>'"
+        raise SpecError("'T' is the temperature of no body", law.where, "a body named", remedy)
+    _check_letters(law, words, meanings(spec, law, hot))
+
+
+def _check_domain(spec: Tables) -> None:
+    """Check the names in conditions."""
     domain = conditions(spec)
     for order in orders(spec, domain):
         _check_words(spec, order.tree, f"a knot of a table in {order.where}", (), spec.parameters)

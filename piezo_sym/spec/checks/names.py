@@ -1,4 +1,4 @@
-"""Names of a spec: well formed, not reserved, and unique."""
+"""Names of a spec: well formed, not reserved, and unique; texts of the law language."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -7,16 +7,26 @@ from keyword import iskeyword
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.grammar import LARGEST, SMALLEST
+from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.names import check_name, check_symbol
-from piezo_sym.spec.tables import bank_of, bank_states, banks, bodies
+from piezo_sym.spec.problems import all_faults
+from piezo_sym.spec.tables import bank_of, bank_states, banks, bodies, laws
 
 #: Variables of every result; see `run`.
 RESULTS = frozenset({"time", "energy", "entropy", "energy_residual", "entropy_residual"})
 #: What generated modules import.
 IMPORTS = frozenset({"numpy", "typing", "dataclasses", "math"})
 PREFIXES = ("y_", "supplied_", "heat_", "produced_", "entropy_exchanged_")
+
+
+def check_texts(spec: Tables) -> None:
+    """Check that each law can be parsed; later errors could not name its place."""
+    with all_faults() as kept:
+        for law in laws(spec):
+            with kept():
+                parse_law(law.text, law.where)
 
 
 def check_names(spec: Tables) -> None:
@@ -32,11 +42,14 @@ def check_names(spec: Tables) -> None:
         check_symbol(symbol, where, taken)
     _check_unique(spec, symbols)
     _check_reserved(spec, symbols)
-    for name, parameter in spec.parameters.items():
-        given = parameter.value if isinstance(parameter.value, tuple) else (parameter.value,)
-        _check_unit(parameter.unit, given, f"parameters.{name}")
-    for name, entry in spec.inputs.items():
-        _check_unit(entry.unit, (entry.default,), f"inputs.{name}")
+    with all_faults() as kept:
+        for name, parameter in spec.parameters.items():
+            given = parameter.value if isinstance(parameter.value, tuple) else (parameter.value,)
+            with kept():
+                _check_unit(parameter.unit, given, f"parameters.{name}")
+        for name, entry in spec.inputs.items():
+            with kept():
+                _check_unit(entry.unit, (entry.default,), f"inputs.{name}")
 
 
 def check_model_name(word: str, where: str) -> str:
