@@ -97,6 +97,8 @@ def simulate(
     made = _check_out(out)
     units = Units(spec)
     signals = dict(pairs(inputs or (), "--input", units.signal))
+    starts = dict(pairs(initial or (), "--initial", units.initial))
+    units.starts(starts)
     span = {"duration": duration, "t0": t0, "times": times, "stop": stop}
     solver = {"rtol": rtol, "step": step, "order": order, "method": method, "outputs": outputs}
     result = _run(
@@ -104,7 +106,7 @@ def simulate(
         out,
         inputs=signals,
         parameters=dict(pairs(parameters or (), "--set", units.numbers)),
-        initial=_start(continued, dict(pairs(initial or (), "--initial", units.initial))),
+        initial=_start(continued, starts),
         events=dict(pairs(events or (), "--event", lambda text, _: text)),
         dissipative_start=dissipative_start,
         **span,

@@ -7,7 +7,7 @@ SI, or an error that names the option.
 
 import json
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from functools import cached_property
 from inspect import Parameter, signature
 from pathlib import Path
@@ -183,7 +183,7 @@ class Units:
     Attributes
     ----------
     assumed : a line for each number that was read in SI, although its declared unit is another,
-        and for each input that no element uses.
+        for each input that no element uses, and for states that start apart.
     """
 
     def __init__(self, spec: str) -> None:
@@ -231,15 +231,34 @@ class Units:
     @cached_property
     def _states(self) -> dict[str, str]:
         """The SI unit of each state, and of ``T_<body>``."""
-        from piezo_sym.spec.load import load
         from piezo_sym.spec.places import state_dimensions
         from piezo_sym.spec.tables import bodies
         from piezo_sym.spec.unit_text import unit_text
 
+        hot = {f"T_{body}": "K" for body in bodies(self._flat)}
+        return hot | {name: unit_text(d) for name, d in state_dimensions(self._flat).items()}
+
+    def starts(self, given: Collection[str]) -> None:
+        """Say of states that start without others of the same rate what that means."""
+        from piezo_sym.spec.checks.energies import motions
+
+        alike: dict[object, list[str]] = {}
+        for element in self._flat.elements if given else ():
+            for state, branch in motions(self._flat, element).items():
+                alike.setdefault(branch, []).append(state)
+        for states in alike.values():
+            first = next((state for state in states if state in given), "")
+            others = [state for state in states if first and state not in given]
+            kept = ", ".join(f"{first} - {state}" for state in others)
+            line = f"{listing(states)} have one rate, and {first} is given; constant in this run"
+            self.assumed += [f"{line}: {kept}"] * bool(others)
+
+    @cached_property
+    def _flat(self) -> Any:
+        from piezo_sym.spec.load import load
+
         with about(self._spec):
-            spec = load(self._spec).flatten()
-        hot = {f"T_{body}": "K" for body in bodies(spec)}
-        return hot | {name: unit_text(d) for name, d in state_dimensions(spec).items()}
+            return load(self._spec).flatten()
 
     @cached_property
     def _declared(self) -> dict[str, str]:
@@ -257,9 +276,7 @@ class Units:
         with about(self._spec, SpecError):
             content = data(read(find(self._spec)))
             if "components" in content:
-                from piezo_sym.spec.load import load
-
-                content = load(self._spec).flatten().model_dump()
+                content = self._flat.model_dump()
         return content
 
     def _assume(self, where: str) -> None:

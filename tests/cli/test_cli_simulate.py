@@ -589,3 +589,15 @@ def test_last_values_have_the_digits_that_show_their_change(call):
     assert before == last
     change = float(run.T_hot[-1] - run.T_hot[0])
     assert float(shown) - float(run.T_hot[0]) == pytest.approx(change, rel=0.01)
+
+
+def test_a_start_apart_from_states_of_the_same_rate_is_said(call, spec_file):
+    guide = 'between = ["tip", "wall"]\nstiffness = "k"\nstate = "x"'
+    spec = spec_file(
+        "[elements.load]", f'[elements.guide]\nkind = "spring"\n{guide}\n[elements.load]'
+    )
+    run = ("simulate", spec, "--duration", "1e-4", "--initial", "x=3um")
+    said = "q, x have one rate, and x is given; constant in this run: x - q"
+    assert said in call(*run).out.splitlines()
+    assert "have one rate" not in call(*run, "--initial", "q=1um").out
+    assert "have one rate" not in call(*run[:-1], "Q_C=0").out
