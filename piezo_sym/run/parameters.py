@@ -95,7 +95,8 @@ def read_initial(
     names, places = [record.name for record in module.STATES], names_elsewhere(module, "initial")
     hot = {f"T_{record.name}": n for n, record in enumerate(module.BODIES)}
     values = known_keys(given, [*names, *hot], "simulate.initial", places)
-    x = own_initial(module, parameters, u)
+    with np.errstate(all="ignore"):
+        x = own_initial(module, parameters, u)
     for record, row in zip(module.STATES, rows(module.STATES, parameters), strict=True):
         if record.name in values:
             size = lanes(parameters, record.bank) if record.bank else None
@@ -129,10 +130,9 @@ def _refuse_single_lanes(module: GeneratedModule, parameters: Any, given: Iterab
 
 
 def own_initial(module: GeneratedModule, parameters: Any, u: FloatArray) -> FloatArray:
-    """Return the module's initial state; outside the domain it may hold nan."""
+    """Return the module's initial state; outside the domain it may hold nan, and NumPy warn."""
     try:
-        with np.errstate(all="ignore"):
-            return np.array(module.initial_state(u, parameters), dtype=float)
+        return np.array(module.initial_state(u, parameters), dtype=float)
     except (ArithmeticError, LookupError, ValueError) as cause:  # a list of another length, too
         what = f"the initial state cannot be computed: {cause}"
         raise RunError(what, f"model '{module.NAME}'", remedy="check the parameters") from cause

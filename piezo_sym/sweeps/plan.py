@@ -216,7 +216,8 @@ def refuse_sizes(
     for size in sizes or [{}]:
         p = read_parameters(module, {**parameters, **size})
         try:
-            own_initial(module, p, u)
+            with np.errstate(all="ignore"):
+                own_initial(module, p, u)
         except PiezoError:  # a swept value may replace the invalid one; each run is checked
             continue
         read_initial(module, p, u, initial)

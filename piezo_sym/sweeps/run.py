@@ -5,7 +5,7 @@ error of each that failed.  Runs with equal inputs and sizes form a `Group`.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
 from typing import Any, final
 
 import numpy as np
@@ -69,16 +69,18 @@ def group_at(
     """
     inputs, base = plan.inputs_at(module, points[0]), plan.base_at(module, points[0])
     changed = plan.values_at("parameters", points)
-    systems = [DrivenModule(module, replace(base, **values), inputs) for values in changed]
+    own, parameters = {f.name: getattr(base, f.name) for f in fields(base)}, type(base)
+    systems = [DrivenModule(module, parameters(**(own | values)), inputs) for values in changed]
     u = inputs.segments[0].at(0.0)
     start = np.full((len(points), row_count(module.STATES, base)), np.nan)
     errors = [""] * len(points)
-    for k, swept in enumerate(plan.values_at("initial", points)):
-        p, given = systems[k].parameters, {**plan.initial, **swept}
-        try:
-            start[k] = read_initial(module, p, u, given) if given else own_initial(module, p, u)
-        except PiezoError as error:
-            errors[k] = str(error)
+    with np.errstate(all="ignore"):
+        for k, swept in enumerate(plan.values_at("initial", points)):
+            p, given = systems[k].parameters, {**plan.initial, **swept}
+            try:
+                start[k] = read_initial(module, p, u, given) if given else own_initial(module, p, u)
+            except PiezoError as error:
+                errors[k] = str(error)
     check_starts(systems, engine, start, errors)
     return Group(systems, start, errors)
 

@@ -12,7 +12,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from importlib.util import find_spec
@@ -23,7 +23,9 @@ from piezo_sym.errors import EngineError, one_line
 
 #: No contraction: products and sums are rounded separately, as in NumPy, so that a residual and the
 #: ledger are the same number, and a state at rest stays there.  It costs 5 % more time.
-COMMON = ("-std=c99", "-fPIC", "-shared", "-ffp-contract=off")
+COMMON = ("-std=c99", "-fPIC", "-ffp-contract=off")
+#: Of the call that makes the library.
+SHARED = "-shared"
 #: Functions of one library call each other directly, as nothing replaces them.
 DIRECT = "-fno-semantic-interposition"
 #: For gcc: unrolls short loops of known length, such as those over stages; 8 % less time.  What a
@@ -92,46 +94,67 @@ def _command(text: str) -> tuple[str, ...]:
 @lru_cache(maxsize=16)
 def _version(command: tuple[str, ...]) -> str:
     try:
-        done = _call([*command, "--version"], VERSION_SECONDS)
+        (done,) = _call(VERSION_SECONDS, [*command, "--version"])
     except EngineError:
         return ""
     return done.stdout if done.returncode == 0 else ""
 
 
 def build(compiler: Compiler, flags: Sequence[str], sources: Sequence[Path], library: Path) -> None:
-    """Compile source files into a shared library."""
-    words = [*compiler.command, *flags, *map(str, sources), "-o", str(library), "-lm"]
-    done = _call(words, MOST_SECONDS)
-    if done.returncode != 0 or not library.is_file():
-        said = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
-        why = one_line(said[0].strip())[:MOST_SAID] or f"exit status {done.returncode}"
-        raise EngineError(f"the compiler failed: {why}", compiler.command[0])
+    """Compile source files into a shared library: several at the same time, then linked."""
+    command = [*compiler.command, *flags]
+    parts = list(sources)
+    if len(sources) > 1:
+        parts = [source.with_suffix(".o") for source in sources]
+        pairs = zip(sources, parts, strict=True)
+        _compile(*([*command, "-c", str(source), "-o", str(part)] for source, part in pairs))
+    _compile([*command, SHARED, *map(str, parts), "-o", str(library), "-lm"])
+    if not library.is_file():
+        raise EngineError("the compiler failed: it makes no library", compiler.command[0])
 
 
-def _call(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[str]:
-    """Run a command without input and without a shell."""
+def _compile(*commands: Sequence[str]) -> None:
+    for words, done in zip(commands, _call(MOST_SECONDS, *commands), strict=True):
+        if done.returncode != 0:
+            said = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
+            why = one_line(said[0].strip())[:MOST_SAID] or f"exit status {done.returncode}"
+            raise EngineError(f"the compiler failed: {why}", words[0])
+
+
+def _call(seconds: float, *commands: Sequence[str]) -> list[subprocess.CompletedProcess[str]]:
+    """Run commands side by side, without input and without a shell."""
+    running: list[subprocess.Popen[str]] = []
     try:
-        with subprocess.Popen(
-            words,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            errors="replace",
-            start_new_session=True,
-        ) as running:
+        with ExitStack() as stack:
             try:
-                out, err = running.communicate(timeout=seconds)
+                for words in commands:
+                    running.append(stack.enter_context(_started(words)))
+                said = [process.communicate(timeout=seconds) for process in running]
             except BaseException:  # it takes too long, or Ctrl-C: its children hold the pipes, too
-                with suppress(ProcessLookupError):
-                    os.killpg(running.pid, signal.SIGKILL)
+                for process in running:
+                    with suppress(ProcessLookupError):
+                        os.killpg(process.pid, signal.SIGKILL)
                 raise
-        return subprocess.CompletedProcess(words, running.returncode, out, err)
+        done = zip(commands, running, said, strict=True)
+        return [subprocess.CompletedProcess(w, p.returncode, *texts) for w, p, texts in done]
     except subprocess.TimeoutExpired as error:
-        raise EngineError(f"the compiler takes more than {seconds:g} s", words[0]) from error
+        what = f"the compiler takes more than {seconds:g} s"
+        raise EngineError(what, commands[0][0]) from error
     except (OSError, subprocess.SubprocessError) as error:
         why = getattr(error, "strerror", None) or type(error).__name__
-        raise EngineError(f"the compiler does not run ({why})", words[0]) from error
+        raise EngineError(f"the compiler does not run ({why})", commands[0][0]) from error
+
+
+def _started(words: Sequence[str]) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        words,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    )
 
 
 @cache

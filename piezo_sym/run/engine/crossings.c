@@ -235,15 +235,18 @@ static mask MODEL(ends_behind)(MODEL(batch) *b, mask where, real begin, real h,
                                const MODEL(crossing) *crossing, const double *part)
 {
     mask near = nowhere;
-    real behind = zero;
+    real behind = zero, most_error = wide(KINK_ERROR);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
+        if (!IN(where, lane) || crossing[lane].which < 0)
+            continue;
         const double most = b->fixed > 0.0 || crossing[lane].several ? b->beyond : BEHIND;
         LANE(&behind, 0, lane) = (1.0 - part[lane]) * LANE(&h, 0, lane);
-        SET(near, lane, IN(where, lane) && crossing[lane].which >= 0 && 1.0 - part[lane] < most);
+        LANE(&most_error, 0, lane) = KINK_ERROR / (1.0 + (double)b->lane[lane].run->switched / MANY_KINKS);
+        SET(near, lane, 1.0 - part[lane] < most);
     }
     if (b->fixed > 0.0 || !any(near))
         return near;
-    const real error = MODEL(kink_error)(b, begin, h, behind, near) / KINK_ERROR;
+    const real error = MODEL(kink_error)(b, begin, h, behind, near) / most_error;
     const mask fits = near & (error <= 1.0);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         const double times = LANE(&error, 0, lane), time = LANE(&behind, 0, lane);

@@ -119,10 +119,12 @@ enum { TRIED = 32, AGAIN = 12 };
 #define AT_ONCE 1e-12
 /*
  * A step may end somewhat beyond its switch, where no stage lies: BEHIND is the longest such part. That
- * adds at most KINK_ERROR of the tolerance to its error, by the rates on both sides.
+ * adds at most KINK_ERROR of the tolerance to its error, by the rates on both sides. Such errors have one sign
+ * and add up, so that they become smaller as a run has passed more switches than MANY_KINKS.
  */
 #define BEHIND (0.99 * (1.0 - stage_at[STAGES - 1]) < 0.05 ? 0.99 * (1.0 - stage_at[STAGES - 1]) : 0.05)
 #define KINK_ERROR 0.1
+#define MANY_KINKS 50.0
 /*
  * How far a step goes beyond a switch of which that is not known yet, and a fixed one. A kink adds an error
  * proportional to the square of that, about this fraction of the tolerance; a jump, one proportional to it.
