@@ -98,7 +98,7 @@ def test_following_the_remedy_leads_to_a_point() -> None:
         ({"inputs": {"V": 1.0}}, "operating_point.inputs: unknown name 'V'"),
         ({"inputs": {"V_in": "1"}}, "operating_point.inputs.V_in: ''1'' is not a finite number"),
         ({"temperatures": {"T": 300.0}}, "operating_point.temperatures: unknown name 'T'"),
-        ({"temperatures": {"body": -1.0}}, "operating_point.temperatures.body: '-1.0' is not pos"),
+        ({"temperatures": {"body": -1.0}}, "operating_point.temperatures.body: -1.0 is not pos"),
     ],
 )
 def test_wrong_arguments_are_named(given: dict[str, object], said: str) -> None:

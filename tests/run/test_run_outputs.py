@@ -131,7 +131,7 @@ def test_a_list_takes_elements_and_single_quantities():
         (["springs.flow"], "did you mean 'spring.flow'?"),
         (["spring.q"], "'spring' has effort, flow, power, energy"),
         ("spring", "'spring' is no list of names; expected 'all', or a list"),
-        (3, "'3' is no list of names"),
+        (3, "3 is no list of names"),
     ],
 )
 def test_a_wrong_name_is_refused_in_one_line(asked, said):
