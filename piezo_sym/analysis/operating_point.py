@@ -101,7 +101,7 @@ def operating_point(
 
     >>> from piezo_sym import operating_point
     >>> operating_point("piezo_stack", inputs={"V_in": 100.0}).initial["q"]
-    0.002013509...
+    0.002013506...
 
     Parameters
     ----------
