@@ -5,15 +5,19 @@ Input: these four parts.  Output: an exception whose ``str`` is one printable li
 proof and a number disagree).
 """
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from math import nan
+from numbers import Real
 from typing import Any, ClassVar, final
 
 MAX_QUOTE = 60
 MAX_PLACE = 200
 MOST_KNOWN = 60
+#: A number of NumPy, as `repr` writes it.
+WRAPPED = re.compile(r"\bnp\.\w+\(([^()]*)\)")
 
 
 @dataclass(eq=False)
@@ -136,10 +140,11 @@ def one_line(text: str) -> str:
 
 
 def quote(value: object) -> str:
-    """Return a short, printable, quoted form of a user's value."""
-    text = value if isinstance(value, str) else repr(value)
+    """Return a short, printable form of a user's value: of a number itself, else quoted."""
+    text = value if isinstance(value, str) else WRAPPED.sub(r"\1", repr(value))
     short = text if len(text) <= MAX_QUOTE else f"{text[: MAX_QUOTE - 3]}..."
-    return legible(f"'{short}'")
+    is_number = isinstance(value, Real) and not isinstance(value, bool)
+    return legible(short if is_number else f"'{short}'")
 
 
 def listing(names: Iterable[str], most: int = 12) -> str:

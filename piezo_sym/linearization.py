@@ -30,6 +30,7 @@ from piezo_sym.files import temporary_folder
 from piezo_sym.module_cache import write_module
 from piezo_sym.modules import module_of
 from piezo_sym.run.checks import FloatArray, calling, known_keys
+from piezo_sym.run.guard import stop_rows
 from piezo_sym.run.module import GeneratedModule, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.spec.load import load
@@ -57,6 +58,8 @@ class LinearModel:
     units : of each name.
     x, u, y : the point.
     rates : dx/dt there: zero, to round-off, at a state of rest.
+    sticking, yielding : the states of stops, by what the stops do in this model. It holds for
+        motions in which they go on doing so: one that yields sticks when the motion turns.
     """
 
     A: FloatArray
@@ -71,15 +74,19 @@ class LinearModel:
     u: FloatArray
     y: FloatArray
     rates: FloatArray
+    sticking: tuple[str, ...] = ()
+    yielding: tuple[str, ...] = ()
 
     def __iter__(self) -> Iterator[FloatArray]:
         """Yield A, B, C, D."""
         return iter((self.A, self.B, self.C, self.D))
 
     def __repr__(self) -> str:
-        """Return the names of x, u and y."""
-        parts = {"x": self.states, "u": self.inputs, "y": self.outputs}
-        shown = "; ".join(f"{word} = {', '.join(parts[word])}" for word in parts)
+        """Return the names of x, u and y, and which stops stick or yield."""
+        parts = {"x =": self.states, "u =": self.inputs, "y =": self.outputs}
+        stops = {"stops stick:": self.sticking, "stops yield:": self.yielding}
+        parts |= {word: names for word, names in stops.items() if names}
+        shown = "; ".join(f"{word} {', '.join(parts[word])}" for word in parts)
         return f"LinearModel({shown})"
 
 
@@ -91,7 +98,7 @@ def linearize(
     inputs: Mapping[str, float] | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
 ) -> LinearModel:
-    """Return the linear model at a point; at the kink of a law, that of one side.
+    """Return the linear model at a point; at the kink of a law or of a stop, that of one side.
 
     >>> from piezo_sym import linearize
     >>> linear = linearize("piezo_stack", inputs={"V_in": 100.0})
@@ -180,10 +187,14 @@ def _linear(
         for record in records
         for name in (f"{prefix}{row}" for row in row_names([record], p))
     }
+    stops = [row for own in stop_rows(module, p, x, u).values() for row in range(n)[own]]
+    fixed = {row: not matrix[row].any() for row in stops}
     return LinearModel(
         *(matrix[:n, :n], matrix[:n, n : n + m], matrix[n + m :, :n], matrix[n + m :, n : n + m]),
         *(tuple(states), tuple(inputs), tuple(outputs), units),
         *(x, u, module.outputs(x, u, p), module.rhs(x, u, p)),
+        sticking=tuple(states[row] for row in stops if not fixed[row]),
+        yielding=tuple(states[row] for row in stops if fixed[row]),
     )
 
 

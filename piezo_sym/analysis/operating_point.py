@@ -7,21 +7,24 @@ an `OperatingPoint`, or a `RunError` that says why there is none.
 
 Steps of the implicit Euler method, each longer than the last, follow the motion from the initial
 state towards rest; Newton's method ends the search.  Linear functions of the state that the motion
-conserves, such as the difference in length of parallel springs, keep their initial values; so does
-the state in directions that do not change the rates (a current that circulates in dead zones).
+conserves, such as the difference in length of parallel springs, keep their initial values.  Where
+other states of rest are near, as stops slip or currents circulate in dead zones, a run decides.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isnan
 from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
+from piezo_sym.analysis.settling import Rest, followed
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray, calling, known_keys, number
-from piezo_sym.run.guard import check_limits
+from piezo_sym.run.guard import check_start
+from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import GeneratedModule, by_name, checked, names_elsewhere, row_name
 from piezo_sym.run.parameters import (
     LaneValue,
@@ -30,6 +33,7 @@ from piezo_sym.run.parameters import (
     read_parameters,
     set_temperature,
 )
+from piezo_sym.run.system import DrivenModule
 
 WHERE = "operating_point"
 #: The step along directions to other states of rest; the least relative change of a temperature,
@@ -52,9 +56,12 @@ class OperatingPoint:
     temperatures : body -> temperature [K].
     holding : held body -> heat [W] to be supplied to keep its temperature.
     eigenvalues : of the Jacobian of all states that are not held [1/s].
-    stable : whether none of them has a positive real part, beyond round-off.
-    undetermined : rows of x that differ between states of rest; x is the one nearest to the
-        initial state.
+    stable : whether none of them has a positive real part, beyond round-off: of the branch on which
+        stops stick or yield as they do at x.
+    undetermined : rows of x that differ between states of rest.
+    after : where rest depends on the way there, as stops (Maxwell-slip, play) and slipping stores
+        have memory, how long [s] the run took that decided between states of rest; 0 if x is the
+        only one, or the initial state; nan if no run decided, and x is near the initial state.
     """
 
     inputs: Mapping[str, float]
@@ -68,13 +75,17 @@ class OperatingPoint:
     eigenvalues: NDArray[np.complex128]
     stable: bool
     undetermined: tuple[str, ...]
+    after: float
 
     def __repr__(self) -> str:
-        """Return outputs, temperatures, whether it is stable, and what is not determined."""
+        """Return outputs, temperatures, stability, which rest it is, and what is not determined."""
         shown = {**self.outputs, **{f"T_{body}": T for body, T in self.temperatures.items()}}
         values = ", ".join(f"{name} = {value:.6g}" for name, value in shown.items())
         free = "".join(f", {name} is not determined" for name in self.undetermined)
-        return f"OperatingPoint({values}, {'stable' if self.stable else 'unstable'}{free})"
+        way = f"where a run from the initial state rests, settled after {self.after:.3g} s"
+        way = "as no run of 'initial' decides, a near one" if isnan(self.after) else way
+        which = f", one rest of many: {way}" if self.after else ""
+        return f"OperatingPoint({values}, {'stable' if self.stable else 'unstable'}{which}{free})"
 
 
 @calling("operating_point")
@@ -86,11 +97,11 @@ def operating_point(
     parameters: Mapping[str, LaneValue] | None = None,
     initial: Mapping[str, LaneValue] | None = None,
 ) -> OperatingPoint:
-    """Return the state of rest under constant inputs near the one that a run approaches.
+    """Return the state of rest under constant inputs that a run from the initial state approaches.
 
     >>> from piezo_sym import operating_point
     >>> operating_point("piezo_stack", inputs={"V_in": 100.0}).initial["q"]
-    0.002013509...
+    0.002013506...
 
     Parameters
     ----------
@@ -99,6 +110,14 @@ def operating_point(
     inputs : name -> number, SI units; the others have their defaults.
     temperatures : body -> temperature [K] at which it is held; the other bodies are free.
     parameters, initial : as for `simulate`; the search begins at `initial`.
+
+    Notes
+    -----
+    With stops or other hysteresis there are many states of rest, and history decides between them.
+    Returned is where a run from `initial` rests, the inputs being constant from its start, so with
+    what its overshoot makes slip. For another history, such as a slow ramp, simulate it and give
+    its end: ``initial={name: run[name][-1] for name in ...}``. Runs hold no body: with
+    `temperatures` the search alone decides, whose damped motion slips less.
 
     Raises
     ------
@@ -110,14 +129,14 @@ def operating_point(
     p = read_parameters(checked(module), parameters)
     u = read_constants(module, inputs)
     start = read_initial(module, p, u, initial)
-    check_limits(module, p, start, u)
     held = _held(module, p, start, temperatures)
     free = np.setdiff1d(np.arange(start.size), list(held.values()))
-    search, x, size = RestSearch.of(module, p, u, start, free).find(start)
-    directions = search.undetermined(x, size)
-    _refuse_open_bodies(module, p, x, directions)
-    undetermined = np.flatnonzero(directions.any(axis=1))
-    return _described(search, x, parameters or {}, list(held), undetermined.tolist())
+    system = DrivenModule(module, p, read_inputs(module, by_name(module.INPUTS, p, u), 1.0))
+    check_start(system, start)
+    search = RestSearch.of(system, u, start, free)
+    rest = Rest.near(search, start)
+    _refuse_open_bodies(module, p, rest.x, rest.directions)
+    return _described(followed(rest, search, start), parameters or {}, list(held))
 
 
 def read_constants(
@@ -162,14 +181,9 @@ def _refuse_open_bodies(
             raise RunError(what, f"model '{module.NAME}'", remedy=remedy)
 
 
-def _described(
-    search: RestSearch,
-    x: FloatArray,
-    parameters: Mapping[str, LaneValue],
-    held: list[str],
-    undetermined: list[int],
-) -> OperatingPoint:
-    module, p, u = search.module, search.parameters, search.u
+def _described(rest: Rest, parameters: Mapping[str, LaneValue], held: list[str]) -> OperatingPoint:
+    search, x, open_ = rest.search, rest.x, rest.directions.any(axis=1)
+    module, p, u = search.module, search.system.parameters, search.u
     temperatures = by_name(module.BODIES, p, module.temperatures(x, p))
     rates = module.rhs(x, u, p)
     holding = {}
@@ -191,5 +205,8 @@ def _described(
         holding=holding,
         eigenvalues=eigenvalues.astype(complex),
         stable=bool(np.max(eigenvalues.real, initial=0.0) <= margin),
-        undetermined=tuple(row_name(module.STATES, p, row) for row in undetermined),
+        undetermined=tuple(
+            row_name(module.STATES, p, row) for row in np.flatnonzero(open_).tolist()
+        ),
+        after=rest.after,
     )

@@ -17,10 +17,11 @@ from typing import Any, TypeAlias, final
 import numpy as np
 
 from piezo_sym.analysis.conserved import basis_of, conserved_functions
-from piezo_sym.errors import RunError
+from piezo_sym.errors import RunError, listing
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.guard import LIMIT, stop_rows
-from piezo_sym.run.module import GeneratedModule, by_name, held, row_name
+from piezo_sym.run.guard import LIMIT, broken, place, remedies, stop_rows
+from piezo_sym.run.module import GeneratedModule, by_name, row_name
+from piezo_sym.run.system import DrivenModule
 
 MOST_STEPS, MOST_MOVES = 400, 40
 LONGEST = 1e20  # the longest Euler step, over the first
@@ -45,6 +46,7 @@ class Approach:
     states: list[FloatArray]  # x (n,) after each step, with the start
     size: FloatArray  # the greatest magnitude of each coordinate (k,); 0 where it never moved
     moving: FloatArray | None  # rates (k,) at the end of a way that does not end at rest
+    outside: FloatArray | None = None  # the state (n,) outside the domain before which it ends
 
 
 @final
@@ -52,8 +54,7 @@ class Approach:
 class RestSearch:
     """A search for a state of rest of a module under constant inputs."""
 
-    module: GeneratedModule
-    parameters: Any
+    system: DrivenModule
     u: FloatArray
     free: Rows  # of the states that are not held
     rows: Rows  # of the coordinates z (k,) among the states
@@ -61,12 +62,15 @@ class RestSearch:
     stops: Mapping[str, slice]  # the rows of the state of each stop
 
     @classmethod
-    def of(
-        cls, module: GeneratedModule, parameters: Any, u: FloatArray, start: FloatArray, free: Rows
-    ) -> RestSearch:
+    def of(cls, system: DrivenModule, u: FloatArray, start: FloatArray, free: Rows) -> RestSearch:
         """Return the search in which all free states are coordinates."""
-        stops = stop_rows(module, parameters, start, u)
-        return cls(module, parameters, u, free, free, np.eye(start.size)[:, free], stops)
+        stops = stop_rows(system.module, system.parameters, start, u)
+        return cls(system, u, free, free, np.eye(start.size)[:, free], stops)
+
+    @property
+    def module(self) -> GeneratedModule:
+        """The generated module."""
+        return self.system.module
 
     def keeping(self, way: Approach) -> RestSearch:
         """Return the search that keeps the linear functions which are conserved on the way."""
@@ -81,12 +85,12 @@ class RestSearch:
     def rates(self, x: FloatArray) -> FloatArray:
         """Return dz/dt (k,)."""
         with np.errstate(all="ignore"):
-            return np.asarray(self.module.rhs(x, self.u, self.parameters)[self.rows])
+            return np.asarray(self.module.rhs(x, self.u, self.system.parameters)[self.rows])
 
     def jacobian(self, x: FloatArray) -> FloatArray:
         """Return the Jacobian (n, n) of the rates with respect to the states."""
         with np.errstate(all="ignore"):
-            return np.asarray(self.module.jacobian(x, self.u, self.parameters))
+            return np.asarray(self.module.jacobian(x, self.u, self.system.parameters))
 
     def slope(self, x: FloatArray) -> FloatArray:
         """Return the Jacobian (k, k) of the rates dz/dt with respect to z."""
@@ -95,15 +99,14 @@ class RestSearch:
 
     def inside(self, x: FloatArray) -> bool:
         """Return whether x is in the domain and has finite rates."""
-        with np.errstate(all="ignore"):
-            margins = self.module.margins(x, self.u, self.parameters)
-        return bool(np.all(held(self.module, margins)) and np.isfinite(self.rates(x)).all())
+        system, u = self.system, self.u
+        return not np.any(system.violated(x, u)) and bool(np.all(system.finite(x, u)))
 
     def _to_limit(self, x: FloatArray, ahead: FloatArray) -> float:
         """Return the fraction of the way to `ahead` at which a stop meets its limit, or 1."""
         meets = 1.0
         for (_, before, limit), (_, after, _) in zip(
-            self._efforts(x), self._efforts(ahead), strict=True
+            self.efforts(x), self.efforts(ahead), strict=True
         ):
             beyond = (after > limit) & (before < limit)
             rise = np.where(beyond, after - before, 1.0)
@@ -114,52 +117,50 @@ class RestSearch:
     def limited(self, x: FloatArray) -> FloatArray:
         """Return x with stops that a long step has moved beyond their limits moved back to them."""
         x = x.copy()
-        for rows, effort, limit in [*self._efforts(x)]:
+        for rows, effort, limit in [*self.efforts(x)]:
             beyond = effort > limit
             x[rows] *= np.where(beyond, limit / np.where(beyond, effort, 1.0), 1.0)
         return x
 
-    def _efforts(self, x: FloatArray) -> Iterator[tuple[slice, FloatArray, FloatArray]]:
+    def efforts(self, x: FloatArray) -> Iterator[tuple[slice, FloatArray, FloatArray]]:
         """Yield the rows of each stop, the magnitudes of its efforts, and at which they yield."""
         if self.stops:
             with np.errstate(all="ignore"):
-                values = self.module.elements(x, self.u, self.parameters)
-            by = by_name(self.module.ELEMENTS, self.parameters, values)
+                values = self.module.elements(x, self.u, self.system.parameters)
+            by = by_name(self.module.ELEMENTS, self.system.parameters, values)
             for stop, rows in self.stops.items():
                 yield rows, np.abs(by[f"{stop}.effort"]), by[f"{stop}{LIMIT}"] * AT_LIMIT
 
     def find(self, start: FloatArray) -> tuple[RestSearch, FloatArray, FloatArray]:
-        """Return the search with the fewest coordinates, the state at rest, and coordinates' sizes.
+        """Return the search with the fewest coordinates, the state at rest, and sizes (n,).
 
         Raises
         ------
-        RunError : the start is outside the domain, or there is no state of rest on the way.
+        RunError : there is no state of rest on the way.
         """
-        if not self.inside(start):
-            what = "the initial state is outside the domain, or has no rates"
-            remedy = "give another as 'initial', or other inputs or parameters"
-            raise RunError(what, self._model, remedy=remedy)
         way = self.approach(start)
         search = self.keeping(way)
         if search.rows.size < self.rows.size:
             sizes, way = way.size, search.approach(start)
         if way.moving is not None:
-            raise search.error(way.moving, way.size)
+            raise search.error(way.moving, way.size, way.outside)
         x = search.at_rest(way.states[-1], way.size)
         if search.rows.size < self.rows.size:
             self._refuse_motion(x, sizes)
-        return search, x, way.size
+        return search, x, np.maximum(np.abs([*way.states, x]).max(axis=0), self.heating_sizes(x))
 
     def approach(self, x: FloatArray) -> Approach:
         """Return the way from x to a state almost at rest."""
-        states, size = [x], np.maximum(np.abs(x[self.rows]), self._heating_sizes(x))
+        states, size = [x], np.maximum(np.abs(x), self.heating_sizes(x))[self.rows]
         if not np.any(self.rates(x)):
             return Approach(states, size, None)
         slope = self.slope(x)
         first = step = 1e-3 / (_fastest(slope) or float(np.linalg.norm(slope, 2)) or 1.0)
         move: FloatArray = np.zeros(self.rows.size)
+        outside = None
         for _ in range(MOST_STEPS):
             if step > LONGEST * first:
+                outside = None
                 break
             slope = self.slope(x)
             matrix = np.eye(self.rows.size) - step * slope
@@ -172,7 +173,9 @@ class RestSearch:
                 continue
             round_off = self._round_off_sizes(x, matrix, step)
             reached = np.maximum.reduce([size, np.abs(ahead[self.rows]), np.abs(move), round_off])
-            if not self.inside(ahead) or not self._contracts(matrix, step, move, ahead, reached):
+            inside = self.inside(ahead)
+            outside = outside if inside else ahead
+            if not inside or not self._contracts(matrix, step, move, ahead, reached):
                 step /= GROWTH
                 continue
             x, size = self.limited(ahead), reached
@@ -180,7 +183,7 @@ class RestSearch:
             if _relative(move, size) <= AT_REST and step * _fastest(slope) > 1:
                 return Approach(states, size, None)
             step *= GROWTH
-        return Approach(states, size, move / step)
+        return Approach(states, size, move / step, outside)
 
     def _round_off_sizes(self, x: FloatArray, matrix: FloatArray, step: float) -> FloatArray:
         """Return the sizes over which moves caused by round-off of the rates are `ROUND_OFF`."""
@@ -188,15 +191,15 @@ class RestSearch:
         moves: FloatArray = np.abs(np.linalg.inv(matrix)) @ terms
         return moves * np.finfo(float).eps / ROUND_OFF
 
-    def _heating_sizes(self, x: FloatArray) -> FloatArray:
-        """Return the change of each coordinate that changes a temperature by `COUNTS`, else 0."""
+    def heating_sizes(self, x: FloatArray) -> FloatArray:
+        """Return the change of each state (n,) that changes a temperature by `COUNTS`, else 0."""
         step = 1e-6 * np.maximum(np.abs(x), 1.0)
         with np.errstate(all="ignore"):
-            temperatures = self.module.temperatures(x, self.parameters)[:, None]
-            changed = self.module.temperatures(x[:, None] + np.diag(step), self.parameters)
+            temperatures = self.module.temperatures(x, self.system.parameters)[:, None]
+            changed = self.module.temperatures(x[:, None] + np.diag(step), self.system.parameters)
             change = np.max(np.abs(changed / temperatures - 1.0), axis=0, initial=0.0)
             size = COUNTS * step / change
-        return np.asarray(np.where(change > 0, size, 0.0)[self.rows], dtype=float)
+        return np.asarray(np.where(change > 0, size, 0.0), dtype=float)
 
     def _contracts(
         self, matrix: FloatArray, step: float, move: FloatArray, ahead: FloatArray, size: FloatArray
@@ -210,6 +213,7 @@ class RestSearch:
 
     def at_rest(self, x: FloatArray, size: FloatArray) -> FloatArray:
         """Return the state of rest near x, by Newton's method with the smallest moves."""
+        outside = None
         for _ in range(MOST_MOVES):
             left, values, right, row_size, scale = self._factors(x, size)
             kept = values > SINGULAR * values[0] if values.size else values > 0
@@ -217,18 +221,21 @@ class RestSearch:
             move = -scale * (right[kept].T @ parts)
             ahead = self.limited(x + self.basis @ move)
             if not self.inside(ahead):
+                outside = ahead
                 break
             x = ahead
             if _relative(move, size) <= ROUND_OFF:
                 break
-        self._refuse_motion(x, size)
+        self._refuse_motion(x, size, outside)
         return x
 
-    def _refuse_motion(self, x: FloatArray, size: FloatArray) -> None:
+    def _refuse_motion(
+        self, x: FloatArray, size: FloatArray, outside: FloatArray | None = None
+    ) -> None:
         """Raise `RunError` if a coordinate moves at x."""
         *_, row_size, _ = self._factors(x, size)
         if np.max(np.abs(self.rates(x) / row_size), initial=0.0) > AT_REST:
-            raise self.error(self.rates(x), size)
+            raise self.error(self.rates(x), size, outside)
 
     def _factors(
         self, x: FloatArray, size: FloatArray
@@ -251,27 +258,29 @@ class RestSearch:
     def undetermined(self, x: FloatArray, size: FloatArray) -> FloatArray:
         """Return the directions (n, k) from x to other states of rest; no row is due to round-off.
 
-        Each is a unit vector in the sizes of coordinates.
+        Each is a unit vector in the sizes (n,) of states.
         """
-        *_, values, right, _, scale = self._factors(x, size)
+        *_, values, right, _, scale = self._factors(x, size[self.rows])
         open_ = right[values <= SINGULAR * values[0]] if values.size else right
         open_ = np.where(np.abs(open_) > UNDETERMINED, open_, 0.0)
         return np.asarray(self.basis @ (scale[:, None] * open_.T))
 
-    def error(self, rates: FloatArray, size: FloatArray) -> RunError:
-        """Return the error of a search without result, with the state of the largest rate."""
+    def error(
+        self, rates: FloatArray, size: FloatArray, outside: FloatArray | None = None
+    ) -> RunError:
+        """Return the error of a search without result: the condition broken, or what moves most."""
+        where = place(self.system)
+        if outside is not None and np.any(self.system.violated(outside, self.u)):
+            text, shown = broken(self.system, outside, self.u)
+            what = f"no state of rest is found: the way there leaves the domain, {shown}"
+            return RunError(what, where, text, f"change {listing(remedies(self.system, text))}")
         row = int(self.rows[int(np.argmax(np.abs(rates) / np.where(size > 0, size, np.inf)))])
-        name = row_name(self.module.STATES, self.parameters, row)
-        what = f"no state of rest is found: '{name}' goes on and on"
-        remedy = "give other inputs"
+        name = row_name(self.module.STATES, self.system.parameters, row)
+        what, remedy = f"no state of rest is found: '{name}' goes on and on", "give other inputs"
         if self.module.BODIES:
             temperatures = f"temperatures={{'{self.module.BODIES[0].name}': ...}}"
             remedy += f", or hold a body that heats: operating_point(..., {temperatures})"
-        return RunError(what, self._model, remedy=remedy)
-
-    @property
-    def _model(self) -> str:
-        return f"model '{self.module.NAME}'"
+        return RunError(what, where, remedy=remedy)
 
 
 def _solved(matrix: FloatArray, right: FloatArray, size: FloatArray) -> FloatArray:

@@ -14,14 +14,15 @@ from typing import Any, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import STICKING, PiezoError, RunError, UsageError, listing, quote
+from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import Trajectory
 from piezo_sym.run.engine.batch import Batch, Stepping, steps_of
 from piezo_sym.run.engine.engine import Engine, engine_of, functions_of
 from piezo_sym.run.engine.library import Layout, Sources, library
 from piezo_sym.run.inputs import Inputs, Segment
-from piezo_sym.run.module import UNPROVED, GeneratedModule, is_unproved, row_count
+from piezo_sym.run.module import GeneratedModule, row_count
+from piezo_sym.run.stuck import stuck_error
 from piezo_sym.run.system import QUIET, DrivenModule
 
 METHOD = "discrete_gradient"
@@ -44,8 +45,6 @@ MOST_STEPS = 1e12
 ORDERS = (2, 4, 6, 8, 10, 12)
 #: A step that ends closer than this, over its length, to a sample or a break ends there.
 ROUNDING = 1e-9
-#: A state [SI] beyond this size has grown without bound.
-GROWN = 1e100
 #: The least error that is estimated, over the noise of a state at rest.
 OVER_NOISE = 50.0
 
@@ -181,29 +180,10 @@ def results_of(
     work = np.stack([records[n] for n in ("steps", "iterations", "rejected")], axis=1)
     errors: list[RunError | None] = [None] * len(x)
     for k in np.flatnonzero(records["failed"]).tolist():
-        errors[k] = _stuck_error(systems[k], float(records["t"][k]), batch.x[k])
+        seen = np.vstack([x[k], batch.states[k]])
+        errors[k] = stuck_error(systems[k], METHOD, float(records["t"][k]), batch.x[k], seen)
     arrays = batch.states, batch.sums, work
     return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.extra > 0)
-
-
-def _stuck_error(system: DrivenModule, t: float, x: FloatArray) -> RunError:
-    """Return the error of a run that stopped at t [s] in the state x (n,)."""
-    why = "no step stays in the domain, or a law that jumps (sign) holds the state at its jump"
-    remedy = f"look at inputs and state; allow more room in [domain]; {STICKING}"
-    if is_unproved(system.module):
-        why = f"each step leaves the domain or consumes entropy, and the model is {UNPROVED}"
-        remedy = "mend what `piezo-sym verify` refutes; or take method LSODA, which goes on"
-    elif np.max(np.abs(x)) > GROWN:
-        why = "it grows without bound"
-        remedy = "check the signs of laws: a spring pulls back by k*q, not by -k*q"
-    elif steep := system.overflowing(t, x):
-        why = f"the slopes of its laws by {listing(map(quote, steep))} overflow there"
-        remedy = "write laws in which no term does: 1/cosh(x)**2 may, 1 - tanh(x)**2 does not"
-    names = [record.name for record in system.module.STATES]
-    rows = system.rows(system.module.STATES)
-    values = ", ".join(f"{n} = {x[row.start]:.6g}" for n, row in zip(names, rows, strict=True))
-    what = f"{METHOD} cannot go on from t = {t:.6g} s at {values}: {why}"
-    return RunError(what, f"model '{system.module.NAME}'", remedy=remedy)
 
 
 def stepping(system: DrivenModule, accuracy: float | FixedStep, stages: int | None) -> Stepping:

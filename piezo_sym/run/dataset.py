@@ -199,7 +199,8 @@ def model_attrs(system: DrivenModule) -> dict[str, Any]:
     """Return the attributes that name the model and its parameters."""
     module, used = system.module, vars(system.parameters).items()
     model = {"model": module.NAME, "spec_sha256": module.SPEC_SHA256, "proofs": verdict_of(module)}
-    return model | {f"parameter_{name}": np.asarray(value)[()] for name, value in used}
+    plain = {n: np.asarray(v) if isinstance(v, tuple) else v for n, v in used}
+    return model | {f"parameter_{name}": value for name, value in plain.items()}
 
 
 def coordinates(system: DrivenModule, times: FloatArray) -> Iterator[Named]:

@@ -165,17 +165,21 @@ def _times_to_check(
 
 
 def domain_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> RunError:
-    """Return the error for a state outside the domain, with the failed condition of least depth."""
+    """Return the error for a state outside the domain at t [s], with a condition that fails."""
+    text, shown = broken(system, x, u)
+    event = "state leaves" if t > system.inputs.start else "start is outside"
+    what = f"{event} the domain at t = {t:.6g} s: {shown}"
+    remedy = f"change {listing(remedies(system, text))}"
+    return RunError(what, place(system), f"{text} throughout the run", remedy)
+
+
+def broken(system: DrivenModule, x: FloatArray, u: FloatArray) -> tuple[str, str]:
+    """Return the failed condition of least depth, and a message with its margin and values."""
     failed = np.flatnonzero(system.violated(x, u)).tolist()
     row = min(failed, key=lambda k: depth(system, system.module.DOMAIN[k].text))
-    condition, margin = system.module.DOMAIN[row], system.margins(x, u)[row]
-    shown = ", ".join(shown_value(*value) for value in values_in(system, condition.text, x, u))
-    event = "state leaves" if t > system.inputs.start else "start is outside"
-    what = f"{event} the domain at t = {t:.6g} s: condition '{condition.text}' has margin"
-    what = f"{what} {margin:.3g} ({shown})"
-    expected = f"{condition.text} throughout the run"
-    remedy = f"change {listing(remedies(system, condition.text))}"
-    return RunError(what, place(system), expected, remedy)
+    text, margin = system.module.DOMAIN[row].text, system.margins(x, u)[row]
+    values = ", ".join(shown_value(*value) for value in values_in(system, text, x, u))
+    return text, f"condition '{text}' has margin {margin:.3g} ({values})"
 
 
 def rate_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> RunError:

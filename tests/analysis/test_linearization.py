@@ -124,7 +124,7 @@ def test_what_has_no_linear_model_says_so() -> None:
         ({"at": {"phi": [1.0, 2.0, 3.0]}}, "linearize.at.phi: 3 values for 2 lanes"),
         ({"inputs": {"q": 1.0}}, "linearize.inputs: unknown name 'q'; give it in 'at'"),
         ({"parameters": {"q": 1.0}}, "linearize.parameters: unknown name 'q'; give it in 'at'"),
-        ({"parameters": {"T_0": -1.0}}, "give another as 'at', or other inputs or parameters"),
+        ({"parameters": {"T_0": -1.0}}, "condition 'T_0 > 0' has margin -1 (T_0 = -1 K)"),
     ],
 )
 def test_messages_name_its_own_arguments(given, said) -> None:  # type: ignore[no-untyped-def]

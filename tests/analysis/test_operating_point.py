@@ -98,7 +98,7 @@ def test_following_the_remedy_leads_to_a_point() -> None:
         ({"inputs": {"V": 1.0}}, "operating_point.inputs: unknown name 'V'"),
         ({"inputs": {"V_in": "1"}}, "operating_point.inputs.V_in: ''1'' is not a finite number"),
         ({"temperatures": {"T": 300.0}}, "operating_point.temperatures: unknown name 'T'"),
-        ({"temperatures": {"body": -1.0}}, "operating_point.temperatures.body: '-1.0' is not pos"),
+        ({"temperatures": {"body": -1.0}}, "operating_point.temperatures.body: -1.0 is not pos"),
     ],
 )
 def test_wrong_arguments_are_named(given: dict[str, object], said: str) -> None:
@@ -108,7 +108,7 @@ def test_wrong_arguments_are_named(given: dict[str, object], said: str) -> None:
 
 
 def test_inputs_outside_the_domain_are_refused() -> None:
-    with pytest.raises(RunError, match="outside the domain"):
+    with pytest.raises(RunError, match=r"outside the domain.* 'T_e > T_0' has margin -6\.15"):
         operating_point("piezo_stack", inputs={"T_e": 290.0})
 
 
@@ -191,6 +191,19 @@ def test_a_body_is_held_at_a_temperature_beyond_twice_its_start() -> None:
     assert found.initial["S"] == pytest.approx(200.0, rel=1e-13)
 
 
+def test_a_way_out_of_the_domain_names_the_condition() -> None:
+    """The body cools to 240 K, below the least temperature of the domain."""
+    spec = LINEAR.replace('"T > 0"', '"T > 0", "T > T_m"')
+    spec = spec.replace("[inputs]", 'T_m = { value = 250, unit = "K" }\n[inputs]')
+    with pytest.raises(RunError) as error:
+        operating_point(parse(spec), inputs={"T_e": 240.0})
+    said = (
+        "no state of rest is found: the way there leaves the domain, condition 'T > T_m' has margin"
+    )
+    assert said in str(error.value)
+    assert "T_m = 250 K); expected T > T_m; change the inputs" in str(error.value)
+
+
 CUSHION = """
 [model]
 name = "cushion"
@@ -246,8 +259,9 @@ def test_a_stop_that_slipped_leaves_the_place_open_but_no_temperature() -> None:
 @pytest.mark.some(1)
 @pytest.mark.parametrize("volts", [50.0, 100.0, 120.0, 150.0])
 def test_stops_rest_within_their_limits(volts: float) -> None:
-    """Long steps moved them beyond; a run from there was refused."""
-    found = operating_point("stack_maxwell", inputs={"V_in": volts})
+    """Long steps of the search, which is alone with a body held, moved them beyond."""
+    held = {"body": 296.15}
+    found = operating_point("stack_maxwell", inputs={"V_in": volts}, temperatures=held)
     p = load("stack_maxwell").parameters
     k, k_s, r = (np.array(p[name].si) for name in ("k", "k_s", "r"))
     z, q = np.array(found.initial["z"]), float(found.initial["q"])

@@ -356,12 +356,12 @@ def test_a_steady_state_is_short_to_read(at_50):
         ({"inputs": {"V": 1.0}}, "unknown name 'V'"),
         ({"inputs": {"V_in": samples([0, 1], [0, 1])}}, "'V_in' does not repeat"),
         ({"initial": {"z": 1.0}}, "unknown name 'z'"),
-        ({"initial": {"S": float("nan")}}, "^periodic_steady_state.initial.S: 'nan' is not"),
+        ({"initial": {"S": float("nan")}}, "^periodic_steady_state.initial.S: nan is not"),
         ({"parameters": {"LL": 1.0}}, "^periodic_steady_state.parameters: unknown name 'LL'"),
         ({"rtol": 1e-12}, "out of range"),
         ({"temperatures": (400, 300)}, "no range"),
         ({"temperatures": (300,)}, "no range"),
-        ({"temperatures": 300}, "'300' is no range; expected two numbers above 0 in K"),
+        ({"temperatures": 300}, "300 is no range; expected two numbers above 0 in K"),
     ],
 )
 def test_a_wrong_argument_is_one_line(changed, said):

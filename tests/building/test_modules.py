@@ -261,5 +261,5 @@ def test_what_is_no_model_is_refused_by_all_that_run_one(call, nothing):
 
 
 def test_a_folder_that_is_no_path_is_refused():
-    with pytest.raises(UsageError, match=r"^generate\.out: '3' is no path; expected a path"):
+    with pytest.raises(UsageError, match=r"^generate\.out: 3 is no path; expected a path"):
         generate(load("piezo_stack"), out=3)

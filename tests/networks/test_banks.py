@@ -179,9 +179,9 @@ MASS = '{ kind = "mass", at = "tip", mass = "m" }\n[banks.cell]'
 ELEMENT = "banks.cell.elements"
 #: Edits of a spec with a bank of Maxwell's cells, and how its refusal begins.
 REFUSED = [
-    ("count = 3", "count = 0", "banks.cell.count: '0' does not fit; expected greater than or"),
-    ("count = 3", "count = 2.5", "banks.cell.count: '2.5' does not fit; expected a valid int"),
-    ("count = 3", "count = 2000000", "banks.cell.count: '2000000' does not fit; expected less"),
+    ("count = 3", "count = 0", "banks.cell.count: 0 does not fit; expected greater than or"),
+    ("count = 3", "count = 2.5", "banks.cell.count: 2.5 does not fit; expected a valid int"),
+    ("count = 3", "count = 2000000", "banks.cell.count: 2000000 does not fit; expected less"),
     ("count = 3", "count = 4", "parameters.k_c.value: a list of 3 values is given; expected 4"),
     ("count = 3", "conut = 3", "banks.cell.conut: unknown key 'conut'; did you mean 'count'?"),
     ("[banks.cell.elements]", FORCE, f"{ELEMENT}.load_2: a force_source is in no cell of a bank"),

@@ -161,7 +161,7 @@ s = { kind = "spring", between = ["a", "wall"], stiffness = "k", state = "q" }
             spec("mass", 'series = ["a", "wall"], {size} = "M"', 2),
             "one velocity, and series is given",
         ),
-        (spec("capacitor", '{size} = "M"', 0), "count: '0' does not fit"),
+        (spec("capacitor", '{size} = "M"', 0), "count: 0 does not fit"),
     ],
 )
 def test_what_does_not_fit_is_refused(text, fault):

@@ -67,8 +67,8 @@ def test_columns_by_name(write):
         ("t,V\n0,1\n", {"column": "W"}, UsageError, "no column 'W'; known: t, V"),
         ("t,Volt\n0,1\n", {"column": "volt"}, UsageError, "did you mean 'Volt'?"),
         ("t,V\n0,1\n", {"time_column": "s"}, UsageError, "time_column: no column 's'"),
-        ("t,V\n0,1\n", {"column": 1}, UsageError, "'1' is no header; expected the text over"),
-        ("t,V\n0,1\n", {"time_column": 0}, UsageError, "time_column: '0' is no header"),
+        ("t,V\n0,1\n", {"column": 1}, UsageError, "1 is no header; expected the text over"),
+        ("t,V\n0,1\n", {"time_column": 0}, UsageError, "time_column: 0 is no header"),
         ("t,V,V\n0,1,2\n", {"column": "V"}, UsageError, "two columns are named 'V'"),
         ("t,V,W\n0,1,2\n", {}, UsageError, "V, W; expected one; in Python say which, column='V'"),
         ("t,V\n0,1\n", {}, UsageError, "1 times and 1 values"),
@@ -102,7 +102,7 @@ def test_missing_file(tmp_path):
 
 
 def test_what_is_no_path_is_refused():
-    with pytest.raises(UsageError, match=r"^samples_from_csv.path: '5' is no path; expected"):
+    with pytest.raises(UsageError, match=r"^samples_from_csv.path: 5 is no path; expected"):
         samples_from_csv(5)
 
 

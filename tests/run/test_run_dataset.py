@@ -157,9 +157,9 @@ def test_progress_is_shown_as_a_bar(capsys, monkeypatch):
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("wrong", [1, "yes", 0])
-def test_no_progress_is_refused(wrong):
-    words = rf"simulate.progress: '{wrong}' shows no progress; expected True, False, None or a func"
+@pytest.mark.parametrize(("wrong", "shown"), [(1, "1"), ("yes", "'yes'"), (0, "0")])
+def test_no_progress_is_refused(wrong, shown):
+    words = rf"simulate.progress: {shown} shows no progress; expected True, False, None or a func"
     with pytest.raises(UsageError, match=words):
         simulate_shipped("piezo_stack", duration=1e-3, progress=wrong)
 

@@ -104,7 +104,7 @@ def test_an_input_that_jumps_is_an_event():
         ({"events": {"q": "p"}}, "'q' cannot name an event"),
         ({"events": {"a b": "p"}}, "'a b' cannot name an event"),
         ({"events": "q"}, "simulate.events: 'q' is no mapping"),
-        ({"events": {"hit": 3}}, "'3' is no text; expected text such as"),
+        ({"events": {"hit": 3}}, "3 is no text; expected text such as"),
         ({"stop": "q"}, "simulate.stop"),
         ({"stop": "q > 1", "step": 1e-5}, "with a fixed step, events are not located"),
         ({"stop": "q < 1"}, "the condition holds at t = 0 s already"),

@@ -131,7 +131,7 @@ def test_a_list_takes_elements_and_single_quantities():
         (["springs.flow"], "did you mean 'spring.flow'?"),
         (["spring.q"], "'spring' has effort, flow, power, energy"),
         ("spring", "'spring' is no list of names; expected 'all', or a list"),
-        (3, "'3' is no list of names"),
+        (3, "3 is no list of names"),
     ],
 )
 def test_a_wrong_name_is_refused_in_one_line(asked, said):
@@ -179,3 +179,9 @@ def test_the_command_tells_when_events_were_and_why_a_run_stopped():
     assert result.exit_code == 0
     assert re.search(r"^event hit, 1 in all: t = \d\.\d+", result.stdout, re.MULTILINE)
     assert re.search(r"^stopped: q > 2e-5 at t = ", result.stdout, re.MULTILINE)
+
+
+def test_parameters_among_the_attributes_are_shown_as_numbers():
+    run = simulate("oscillator", duration=1e-2, times=2, parameters={"k": np.float64(2.5)})
+    assert run.attrs["parameter_k"] == 2.5
+    assert "np.float64" not in repr({k: v for k, v in run.attrs.items() if "parameter" in k})

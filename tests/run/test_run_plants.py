@@ -165,11 +165,11 @@ def test_a_step_that_is_not_taken_restores_the_plants_before_it():
     ("options", "said"),
     [
         ({"every": 0}, "Stepper.every"),
-        ({"every": 2.5}, "Stepper.every: '2.5' is not allowed; expected a whole number >= 1"),
+        ({"every": 2.5}, "Stepper.every: 2.5 is not allowed; expected a whole number >= 1"),
         ({"delay": -1}, "Stepper.delay"),
         ({"delay": 1.5}, "Stepper.delay"),
         ({"quantum": {"y_amb": 1.0}}, "Stepper.quantum: unknown name 'y_amb'"),
-        ({"quantum": {"q": -1.0}}, "Stepper.quantum.q: '-1.0' is not positive"),
+        ({"quantum": {"q": -1.0}}, "Stepper.quantum.q: -1.0 is not positive"),
         ({"parameters": []}, "Stepper.parameters: there is no plant; expected one mapping per"),
         ({"parameters": [{}, {"hysteron_count": 3}]}, "Stepper.parameters: banks differ in size"),
     ],
@@ -193,7 +193,7 @@ def test_inputs_of_another_shape_are_refused(wrong):
 
 def test_an_input_that_is_no_number_is_named_when_it_is_given():
     late = Stepper("piezo_stack", step=H, parameters=[{}, {}], delay=3)
-    with pytest.raises(UsageError, match="step: input 'V_in': 'nan' is not a finite number"):
+    with pytest.raises(UsageError, match="step: input 'V_in': nan is not a finite number"):
         late.step([0.0, np.array([1.0, np.nan]), 298.15])
     late.step(U)
     assert late.time == H

@@ -207,7 +207,7 @@ def test_a_reset_begins_again():
     ("x", "error", "words"),
     [
         ([0.0], UsageError, "1 numbers are no state; expected one number each for q, p"),
-        ([0, 0, 0, 0, 0, nan], UsageError, "Stepper.reset[5]: 'nan' is not a finite number"),
+        ([0, 0, 0, 0, 0, nan], UsageError, "Stepper.reset[5]: nan is not a finite number"),
         ([0, 0, 0, 0, 0, -1.0], RunError, "condition 'T > T_0'"),
     ],
 )

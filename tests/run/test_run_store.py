@@ -54,7 +54,7 @@ def test_a_store_is_never_overwritten(tmp_path):
     assert before == {part: part.read_bytes() for part in path.rglob("*") if part.is_file()}
     with pytest.raises(UsageError, match="is no Zarr store; name it"):
         simulate("piezo_stack", duration=1e-3, store=tmp_path / "run.nc")
-    with pytest.raises(UsageError, match=r"simulate\.store: '3' is no path"):
+    with pytest.raises(UsageError, match=r"simulate\.store: 3 is no path"):
         simulate("piezo_stack", duration=1e-3, store=3)
 
 

@@ -285,7 +285,7 @@ REFUSED = {
     '[components.one]\nspec = "."': "'.' is no file there",
     '[components.one]\nspec = ""': "'' is no file there",
     '[components.one]\nspec = "a\\u0000"': "'a\\x00' is no file there",
-    "[components.one]\nspec = 3": "components.one.spec: '3' is no spec; expected a shipped name",
+    "[components.one]\nspec = 3": "components.one.spec: 3 is no spec; expected a shipped name",
     '[components.one]\nnodes = { tip = "x" }': "components.one.spec: is missing; add it",
     '[components]\none = "cell.toml"': "components.one: 'cell.toml' does not fit",
     ONE.replace("nodes", "node"): "components.one.node: unknown key 'node'; did you mean 'nodes'?",

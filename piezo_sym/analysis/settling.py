@@ -1,0 +1,111 @@
+"""Of many states of rest, the one to which a run from the start leads.
+
+Input: a module with its parameters and constant inputs, the state at the start, the free states.
+Output: `Rest`: a state of rest, the search that found it, and the length of the run.
+
+What a stop or Bouc-Wen's law has slipped stays, so rest depends on the way there.  The steps of the
+search are longer than the motion, which damps it: less slips than in an overshoot.  So the search
+begins at the end of runs, each ten times longer than those before, until its rest stays the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, final
+
+import numpy as np
+
+from piezo_sym.analysis.rest import COUNTS, ROUND_OFF, RestSearch
+from piezo_sym.run import simulate
+from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.module import by_name
+
+#: The accuracy of runs; how far rest may move from one to the next, over the sizes of states.
+RTOL, SAME = 1e-7, 1e-5
+#: The length of the first run, in periods of the slowest oscillation, or else in times of the
+#: fastest motion; that of each next run over the last; the most runs, and steps of the last.
+PERIODS, TIMES, LONGER, MOST_RUNS, MOST_STEPS = 3.0, 100.0, 10.0, 8, 20_000
+
+
+@final
+@dataclass(frozen=True)
+class Rest:
+    """A state of rest.
+
+    Attributes
+    ----------
+    search : the search that found it.
+    x : the state (n,).
+    size : the greatest magnitude of each state on the way there (n,).
+    directions : to other states of rest (n, k), but for those where stops slip.
+    after : the length of the run [s] whose end decides between states of rest; 0 if there is one
+        alone, or the start is one; nan if no run decides.
+    """
+
+    search: RestSearch
+    x: FloatArray
+    size: FloatArray
+    directions: FloatArray
+    after: float = 0.0
+
+    @classmethod
+    def near(cls, search: RestSearch, start: FloatArray, size: FloatArray | float = 0.0) -> Rest:
+        """Return the rest that a search finds from `start` (n,), with sizes of at least `size`."""
+        search, x, reached = search.find(start)
+        size = np.maximum(reached, size)
+        return cls(search, x, size, search.undetermined(x, size))
+
+    def memory(self) -> FloatArray:
+        """Return the size of each state (n,) that depends on the way to rest, nan for others."""
+        size = np.where(self.directions.any(axis=1), self.size, np.nan)
+        for own, effort, limit in self.search.efforts(self.x):
+            part = np.divide(limit, effort, out=np.zeros_like(effort), where=effort > 0)
+            size[own] = np.abs(self.x[own]) * part  # at which it yields
+        return size
+
+    def is_at(self, x: FloatArray) -> bool:
+        """Return whether the state x (n,) is this one, but for motions that are too small to slip.
+
+        A momentum is as large as what its mass would have in motions of the other states' sizes.
+        """
+        slope = self.search.jacobian(self.x)
+        fastest = float(np.max(np.abs(np.linalg.eigvals(slope)), initial=0.0)) or 1.0
+        heat = self.search.heating_sizes(self.x) / COUNTS
+        size = np.maximum.reduce([self.size, heat, np.abs(slope) @ self.size / fastest])
+        return not np.any(np.abs(x - self.x) > SAME * size)
+
+
+def followed(rest: Rest, search: RestSearch, start: FloatArray) -> Rest:
+    """Return the rest to which a run from the state `start` (n,) leads.
+
+    That is `rest`, found from there by `search`, if it is the only one.  No run holds a body.
+    """
+    size, open_ = rest.memory(), rest.directions
+    if np.isnan(size).all() or rest.is_at(start):
+        return rest
+    module, p, length = search.module, search.system.parameters, _first_length(rest, start)
+    options: dict[str, Any] = {"rtol": RTOL, "times": 2, "parameters": vars(p)}
+    options["initial"] = by_name(module.STATES, p, start)
+    options["inputs"] = by_name(module.INPUTS, p, search.u)
+    for _ in range(MOST_RUNS if search.free.size == start.size else 0):
+        run, before = simulate(module, duration=length, **options), rest
+        last = [np.atleast_1d(run[state.name].values[-1]) for state in module.STATES]
+        end = np.concatenate(last)
+        rest = Rest.near(search, end, before.size)
+        size, open_ = np.fmax(size, rest.memory()), np.hstack([open_, rest.directions])
+        if rest.is_at(end) or not np.any(np.abs(rest.x - before.x) > SAME * size):
+            return replace(rest, after=length, directions=open_)
+        if run.attrs.get("accepted_steps", 0) > MOST_STEPS:
+            break
+        length *= LONGER
+    return replace(rest, after=np.nan, directions=open_)
+
+
+def _first_length(rest: Rest, start: FloatArray) -> float:
+    """Return some periods [s] of the slowest oscillation, or some times of the fastest motion."""
+    slopes = [rest.search.jacobian(x) for x in (start, rest.x)]
+    values = np.concatenate([np.linalg.eigvals(slope) for slope in slopes])
+    fastest = float(np.max(np.abs(values), initial=0.0)) or 1.0
+    turning = np.abs(values.imag)
+    slowest = np.min(turning, where=turning > ROUND_OFF * fastest, initial=np.inf)
+    return max(PERIODS * 2 * np.pi / float(slowest), TIMES / fastest)
