@@ -53,6 +53,16 @@ def test_steps_end_at_kinks_that_are_seen_before(rtol):
     assert run.attrs["newton_iterations"] < 5.5 * steps  # 5.0 and 3.5; else 6.0 and 5.3
 
 
+def test_switches_of_a_periodic_motion_are_expected():
+    """Behind each switch there is a step whose rates do not tell of the next one."""
+    more = []
+    for duration in (40.0, 60.0):  # 10 periods apart, 4 switches in each
+        inputs, end = {"F": sine(8.0, 0.5)}, [duration]
+        run = simulate(load(BOUC_WEN), inputs=inputs, duration=duration, rtol=2e-6, times=end)
+        more.append(run.attrs["newton_iterations"])
+    assert more[1] - more[0] < 10 * 52  # 46.7 in a period; 57.2 where each is met by chance
+
+
 def test_a_solve_ends_where_its_residuals_are_small():
     run = simulate("oscillator", initial={"q": 1e-3}, duration=10.0, rtol=1e-5, times=[10.0])
     assert run.attrs["newton_iterations"] < 2 * run.attrs["accepted_steps"]

@@ -46,6 +46,8 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(side, m->branches);
     PLACE(after, m->branches);
     PLACE(slack, m->branches);
+    PLACE(interval, 2 * m->branches);
+    PLACE(successor, 2 * m->branches);
     PLACE(widest, m->branches);
     PLACE(sums, m->booked);
     PLACE(lost, m->booked);
@@ -138,6 +140,9 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     b->lane[lane].steady = b->lane[lane].ahead = b->lane[lane].hard = HUGE_VAL;
     b->lane[lane].kept = -HUGE_VAL;
     b->lane[lane].which = b->lane[lane].turned = b->lane[lane].goal = -1;
+    b->lane[lane].passing = -1;
+    for (long k = 0; k < 2 * m->branches; ++k)
+        LANE(b->interval, k, lane) = 0.0;
     for (long k = 0; k < m->branches; ++k)
         LANE(b->after, k, lane) = LANE(b->slack, k, lane) = LANE(b->widest, k, lane) = 0.0;
     b->lane[lane].since = run->t;

@@ -24,6 +24,9 @@ enum { MOST_AIMS = 2 };
 /* The length after a switch grows by no more than this factor from one time to the next. */
 #define MORE_AFTER 1.5
 
+/* Intervals between switches are alike if they differ by less than this part, as in periodic motions. */
+#define ALIKE 0.02
+
 /* How much longer the next steps may be, by the errors of these. */
 static real MODEL(growth)(const MODEL(batch) *b, real error)
 {
@@ -39,6 +42,34 @@ static void MODEL(keep_after)(MODEL(batch) *b, const MODEL(lane) *l, int lane, d
     double *const after = &LANE(b->after, l->turned, lane);
     const double allowed = l->whole * MODEL(lesser)(l->longer, most);
     *after = *after > 0.0 ? MODEL(lesser)(allowed, MORE_AFTER * *after) : allowed;
+}
+
+/*
+ * Learn how long after the switch before it the switch at which a step ended comes, and which it is. Rows of
+ * `interval` are switches to either side. An interval that differs from the one before it is kept as negative.
+ */
+static void MODEL(learn_interval)(MODEL(batch) *b, MODEL(lane) *l, int lane)
+{
+    if (l->passing >= 0) {
+        double *const interval = &LANE(b->interval, l->passing, lane);
+        const double found = l->t - l->passed, before = fabs(*interval);
+        *interval = fabs(found - before) <= ALIKE * before ? found : -found;
+        LANE(b->successor, l->passing, lane) = (double)l->which;
+    }
+    l->passed = l->t;
+    l->passing = 2 * l->which + (LANE(b->side, l->which, lane) > 0.0);
+}
+
+/* Where no switch is seen ahead, one is expected when it came the last times. */
+static void MODEL(expect_switch)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
+{
+    if (l->goal >= 0 || l->passing < 0)
+        return;
+    const double ahead = l->passed + LANE(b->interval, l->passing, lane) - l->t;
+    if (ahead > 0.0) {
+        l->ahead = ahead;
+        l->goal = (long)LANE(b->successor, l->passing, lane);
+    }
 }
 
 /*
@@ -63,6 +94,9 @@ static void MODEL(next_length)(MODEL(batch) *b, MODEL(lane) *l, int lane, double
         }
         l->h = MODEL(greater)(l->h, MODEL(lesser)(allowed, missed));
     }
+    if (switches)
+        MODEL(learn_interval)(b, l, lane);
+    MODEL(expect_switch)(b, l, lane);
     l->turned = l->which;
     l->h = MODEL(lesser)(l->h, BELOW_HARD * l->hard);
     l->hard *= LESS_HARD;

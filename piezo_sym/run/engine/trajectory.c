@@ -46,6 +46,8 @@ typedef struct {
     double aimed;  /* the length of a step but for a switch, just behind which it is to end; or 0 */
     double ahead;  /* time from the end of the step to the next switch, or HUGE_VAL */
     long goal;     /* that switch */
+    double passed; /* time of the last switch */
+    long passing;  /* the row of `interval` of that switch; -1 if there was none */
     int phase, behind, predicted, last, cuts, refused, halved;
     int idle;    /* switches in a row at one time */
     int aims;    /* steps in a row that were to end behind a switch */
@@ -81,6 +83,7 @@ typedef struct {
     real *rate, *side, *sums, *lost, *known;       /* at the beginning of a step; of the step before */
     real *after; /* branches: the length for a step after each switch; 0: not known */
     real *widest; /* branches: the largest magnitude of each switching function so far */
+    real *interval, *successor; /* 2*branches: see learn_interval */
     real *slack; /* branches: by how much time a step may end behind each switch; 0: not known */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
