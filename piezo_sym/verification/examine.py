@@ -72,8 +72,8 @@ def examine(
             if number == work.program:
                 yield from work.read_back(1.0)
             else:
-                left_out = (n for n, times in late.items() if times > 1)
-                yield from work.decided(work.after(number, left_out), 1 / len(again))
+                left = [n for n in prover.resting((number,)) if late.get(n, 1) == 1]
+                yield from work.decided(left, 1 / len(again))
         yield work.begun(None, 1.0)
 
 
@@ -101,10 +101,6 @@ class _Work:
         """Return what was decided since the last call, and what is done next."""
         done, proved, self._done, self._proved = self._done, self._proved, {}, {}
         return Progress(done, number, part, proved)
-
-    def after(self, late: int, left_out: Iterable[int]) -> list[int]:
-        """Return a row and those that rest on it, without those that are left out."""
-        return [n for n in self.prover.resting((late,)) if n not in {*left_out}]
 
     def decided(
         self, numbers: Iterable[int], part: float, known: Mapping[int, Row] = NOTHING

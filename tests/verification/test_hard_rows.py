@@ -154,6 +154,14 @@ def test_a_row_that_is_left_out_is_open_and_so_are_those_that_rest_on_it(found):
     assert without[DAMPER] is Verdict.PROVED
 
 
+def test_of_rows_that_rest_on_one_that_comes_last_none_is_decided_that_is_left_out(found):
+    keys = [*verdicts(examined(found))]
+    first, *last = (keys.index(key) for key in (("temperature", "body"), ("sigma", ""), DAMPER))
+    late = {first: 1, **dict.fromkeys(last, 2)}
+    sent = answer(Request(load("piezo_stack"), 60.0, late))
+    assert {m.next for m in sent if isinstance(m, Progress)}.isdisjoint(last)
+
+
 def test_rows_that_are_known_are_not_decided_again(found, monkeypatch):
     """They are attacked, unless they were."""
     record = Record("piezo_stack", 28.0)
