@@ -10,27 +10,18 @@ import base64
 import os
 import pickle
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
 from functools import cache
 from threading import Thread
 from time import monotonic
-from typing import TYPE_CHECKING, Any, final
+from typing import TYPE_CHECKING, Any, NamedTuple, final
 
 from piezo_sym.errors import PiezoError
 from piezo_sym.processes import Worker, beside
 from piezo_sym.spec.values import Template
-from piezo_sym.verification.protocol import (
-    ENDED,
-    KILLED,
-    LATE,
-    OVERDUE,
-    TOO_LARGE,
-    Request,
-    Stop,
-)
+from piezo_sym.verification.protocol import ENDED, KILLED, LATE, OVERDUE, TOO_LARGE, Request, Stop
 
 if TYPE_CHECKING:
     from piezo_sym.iphs import IPHS
@@ -62,24 +53,15 @@ def examined(subject: IPHS | Model) -> Report:
 
 
 @final
-@dataclass(frozen=True)
-class Examination:
+class Examination(NamedTuple):
     """What is being found of a model: who asks for it waits.
 
     What `examined` raises is raised by either; `template` raises a `ProofError` if the
     process ended before it had the texts of the module.
     """
 
-    _texts: Future[Template]
-    _verdicts: Future[Report]
-
-    def template(self) -> Template:
-        """Return the texts of the module, before anything is proved of them."""
-        return self._texts.result()
-
-    def report(self) -> Report:
-        """Return the verdicts."""
-        return self._verdicts.result()
+    template: Callable[[], Template]  # the texts of the module, before anything is proved of them
+    report: Callable[[], Report]  # the verdicts
 
 
 @contextmanager
@@ -100,7 +82,7 @@ def examining(model: Model) -> Iterator[Examination]:
 
     Thread(target=examine, daemon=True).start()
     try:
-        yield Examination(texts, verdicts)
+        yield Examination(texts.result, verdicts.result)
     except BaseException:
         if not verdicts.done():
             _examiner().close()

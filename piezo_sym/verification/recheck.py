@@ -21,8 +21,6 @@ from piezo_sym.files import temporary_folder
 CHECKER = Path(__file__).parents[1] / "checker"
 #: Seconds that the checker is given for one spec.
 PATIENCE = 600.0
-
-
 #: A line of the checker: its verdict, the row's id and element, and the reason.
 LINE = re.compile(r"(confirmed|not confirmed|stated) (\w+)(?: (\w+))?(?:: (.*))?")
 
@@ -49,24 +47,16 @@ class Recheck:
 
 
 def check_installed() -> None:
-    """Raise where what the checker needs is not installed.
-
-    Raises `UsageError`, which names what to install.
-    """
+    """Raise `UsageError`, which names what to install, where the checker needs it."""
     if find_spec("cvc5") is None:
         remedy = "pip install 'piezo_sym[proof]'"
         raise UsageError("cvc5 is not installed", "--recheck", remedy=remedy)
 
 
 def recheck(spec: str, proofs: str) -> Recheck:
-    """Return what the checker says of every row of a report.
+    """Return what the checker says of every row, for the texts of a spec and its ``proofs.json``.
 
     Raises `UsageError` if what the checker needs is not installed.
-
-    Parameters
-    ----------
-    spec : the text of the spec, as the user wrote it.
-    proofs : the text of ``proofs.json``.
     """
     check_installed()
     folder = temporary_folder()
