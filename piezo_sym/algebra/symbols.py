@@ -1,4 +1,4 @@
-"""Names to SymPy symbols, and law trees to SymPy expressions: the one place where both happen.
+"""Names to SymPy symbols, law trees to SymPy expressions and structure coefficients back to trees.
 
 Input: a `Circuit`.  Output: a `SymbolTable`.  All symbols are real; a parameter that the domain
 says is positive (or not negative) is so in SymPy too; temperatures are positive.  A symbol of a
@@ -7,6 +7,7 @@ bank's lane is spelled with the paper's index, ``phi_j``.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import partial
 from typing import Any, final
 
@@ -14,12 +15,13 @@ import sympy as sp
 
 from piezo_sym.algebra.sums import LaneSymbol, SymbolicLaneSum
 from piezo_sym.errors import SpecError, UnknownNameError, nearest, quote
-from piezo_sym.expressions.calculus import choices
+from piezo_sym.expressions.calculus import add, choices, div, mul, power
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.grammar import parse_rule
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import (
     COMPARED,
+    ONE,
     Add,
     Call,
     Cmp,
@@ -204,8 +206,7 @@ def to_sympy(node: Expr, table: Mapping[str, sp.Expr]) -> sp.Expr:
         case If(then, Cmp(op, left, right), other):
             choose = partial(_choice, op, to_sympy(then, table), to_sympy(other, table))
             return _by_branches(choose, (to_sympy(left, table), to_sympy(right, table)))
-    msg = f"{type(node).__name__} is no law"
-    raise TypeError(msg)
+    raise TypeError(f"{type(node).__name__} is no law")
 
 
 def _choice(op: str, then: sp.Expr, other: sp.Expr, left: sp.Expr, right: sp.Expr) -> sp.Expr:
@@ -250,3 +251,26 @@ def _kinked(function: str, *args: sp.Expr) -> sp.Expr:
         cases.append((to_sympy(law.then, table), _relation(law.condition.op, left, right)))
         law = law.other
     return sp.Piecewise(*cases, (to_sympy(law, table), True))
+
+
+def coefficient(expr: sp.Expr) -> Expr:
+    """Return a rational function of symbols as a tree, symbols and powers in a fixed order."""
+    top, bottom = sp.fraction(sp.together(expr))
+    symbols = sorted(expr.free_symbols, key=lambda symbol: str(symbol.name))
+    return div(_polynomial(top, symbols), _polynomial(bottom, symbols))
+
+
+def _polynomial(expr: sp.Expr, symbols: list[sp.Symbol]) -> Expr:
+    if not symbols:
+        return _number(expr)
+    terms = list[Expr]()
+    for exponents, value in sp.Poly(expr, *symbols).terms():
+        term: Expr = ONE
+        for exponent, symbol in zip(exponents, symbols, strict=True):
+            term = mul(term, power(Sym(symbol.name), Fraction(exponent)))
+        terms.append(mul(_number(value), term))
+    return add(*terms)
+
+
+def _number(value: sp.Expr) -> Num:
+    return Num(Fraction(int(value.p), int(value.q)))

@@ -6,8 +6,8 @@ Input: a `LaneMatrix` and the names of its factors.  Output: terms, or sums to d
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.algebra.lanes import LaneMatrix
+from piezo_sym.algebra.symbols import coefficient
 from piezo_sym.codegen.program import Names, Quantity
 from piezo_sym.expressions.calculus import mul, neg
 from piezo_sym.expressions.tree import Expr, LaneSum, Sym

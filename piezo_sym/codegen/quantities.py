@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import final
 
-from piezo_sym.algebra.coefficients import coefficient
 from piezo_sym.algebra.lanes import LaneMatrix
+from piezo_sym.algebra.symbols import coefficient
 from piezo_sym.codegen.differences import with_excess
 from piezo_sym.codegen.products import SUMS, product, slip_rate, sums_in
 from piezo_sym.codegen.program import Described, Limit, Names, Quantity

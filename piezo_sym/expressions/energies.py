@@ -15,8 +15,7 @@ from typing import final
 
 from piezo_sym.expressions.calculus import add, compared, derivative, inserted, mul, neg
 from piezo_sym.expressions.integrals import MAX_PARTS, NoFormError, by_rules, divided, slope_of
-from piezo_sym.expressions.reflection import reflected
-from piezo_sym.expressions.tidying import collected, settled, tidied
+from piezo_sym.expressions.tidying import collected, reflected, settled, tidied
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
@@ -49,12 +48,9 @@ def antiderivative(
 ) -> Expr | None:
     """Return an antiderivative of `node` by `name`, or None if it has no simple form.
 
-    Known forms are those of `integrals`, and choices between them by affine comparisons.
-
-    Parameters
-    ----------
-    otherwise : (smooth branch, name, positive names) -> an antiderivative where rules have none.
-    positive : names whose values are positive; they decide the order of some edges.
+    Known forms are those of `integrals`, and choices between them by affine comparisons.  Where
+    rules have none, `otherwise` gives that of a smooth branch.  The values of the names in
+    `positive` are so; they decide the order of some edges.
     """
     with suppress(NoFormError):
         return by_rules(node, name)

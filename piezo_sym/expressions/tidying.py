@@ -1,16 +1,20 @@
 """Simplification of trees: like terms added up, choices taken that signs of names decide.
 
-Input: a tree.  Output: a tree of the same value.
+Input: a tree.  Output: a tree of the same value; or, by `reflected`, of a law mirrored in its
+variable, W(-z), with signs brought to the front: odd and even functions have the same arguments as
+in the law itself, so that W(z) + W(-z) of an odd law cancels term by term.
 """
 
 from collections.abc import Collection
 from fractions import Fraction
 
-from piezo_sym.expressions.calculus import add, inserted, mul, neg
+from piezo_sym.expressions.calculus import add, inserted, mul, neg, power, rebuilt
+from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     COMPARED,
     ONE,
     Add,
+    Call,
     Cmp,
     Div,
     Expr,
@@ -20,6 +24,7 @@ from piezo_sym.expressions.tree import (
     Num,
     Pow,
     Sym,
+    knots,
     rebuild,
 )
 
@@ -84,3 +89,39 @@ def _sign(node: Expr, positive: Collection[str]) -> int | None:
             signs = {_sign(term, positive) for term in terms}
             return signs.pop() if len(signs) == 1 else None
     return None
+
+
+def reflected(law: Expr, letter: str) -> Expr:
+    """Return a law with the sign of its letter changed.
+
+    Raises `ZeroDivisionError` if a divisor simplifies to zero.
+    """
+
+    def turned(node: Expr) -> Expr:
+        return reflected(node, letter)
+
+    match law:
+        case Sym(name):
+            return Neg(law) if name == letter else law
+        case Add(terms):
+            parts = tuple(map(turned, terms))
+            if all(isinstance(part, Neg) for part in parts):  # one minus in front
+                return neg(add(*map(neg, parts)))
+            return add(*parts)
+        case Pow(base, exponent):
+            inner = turned(base)
+            if isinstance(inner, Neg) and exponent.denominator == 1:
+                size = power(inner.arg, exponent)
+                return neg(size) if exponent.numerator % 2 else size
+            return power(inner, exponent)
+        case Call(function, (first, *others)):
+            inner, rest = turned(first), tuple(map(turned, others))
+            if isinstance(inner, Neg) and knots(law):  # y(-x) is minus the table of -x_k, -y_k
+                mirrored = (neg(turned(part)) for pair in reversed(knots(law)) for part in pair)
+                return neg(Call(function, (inner.arg, *mirrored)))
+            parity = RECORDS[function].parity
+            if not isinstance(inner, Neg) or not parity:
+                return Call(function, (inner, *rest))
+            call = Call(function, (inner.arg, *rest))
+            return neg(call) if parity == "odd" else call
+    return rebuilt(law, turned)

@@ -14,7 +14,7 @@ from typing import final
 
 import sympy as sp
 
-from piezo_sym.algebra.coefficients import coefficient
+from piezo_sym.algebra.symbols import coefficient
 from piezo_sym.errors import NetworkError, SpecError, listing, quote
 from piezo_sym.expressions.calculus import add, div, inserted, mul, neg, power
 from piezo_sym.expressions.exact_eval import evaluate

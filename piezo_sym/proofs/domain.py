@@ -10,7 +10,7 @@ from decimal import Context
 from fractions import Fraction
 from types import MappingProxyType
 
-from piezo_sym.algebra.coefficients import coefficient
+from piezo_sym.algebra.symbols import coefficient
 from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Cmp, Expr, Neg, names

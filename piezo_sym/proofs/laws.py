@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from piezo_sym.expressions.calculus import add, increasing, mul, neg
-from piezo_sym.expressions.reflection import reflected
 from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tidying import reflected
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Mul, Node, Num, Sym, names
 from piezo_sym.expressions.tree import replace as substituted
 from piezo_sym.iphs import IPHS

@@ -16,9 +16,8 @@ from itertools import combinations
 from piezo_sym.errors import STICKING
 from piezo_sym.expressions.calculus import add, mul, power
 from piezo_sym.expressions.exact_eval import all_hold
-from piezo_sym.expressions.reflection import reflected
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tidying import tidied
+from piezo_sym.expressions.tidying import reflected, tidied
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,

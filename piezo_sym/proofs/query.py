@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import final
 
 from piezo_sym.expressions.tree import Add, Cmp, Expr, If, Mul, Neg, Num, Pow, Sym, names
-from piezo_sym.proofs.facts import Clause
+from piezo_sym.proofs.rational import Clause
 
 #: Prefix of each name of a model in a query: no word of SMT-LIB or of a solver begins with it.
 MARK = "?"
@@ -81,8 +81,7 @@ def _term(node: Expr) -> str:
             return f"(* {' '.join(_term(factor) for factor in _factors(node))})"
         case Pow(base, exponent) if exponent.denominator == 1 and exponent > 0:
             return f"(* {' '.join([_term(base)] * exponent.numerator)})"
-    msg = f"{type(node).__name__} is no polynomial"
-    raise TypeError(msg)
+    raise TypeError(f"{type(node).__name__} is no polynomial")
 
 
 def _factors(node: Expr) -> list[Expr]:

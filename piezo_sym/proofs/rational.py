@@ -16,7 +16,7 @@ from functools import reduce
 from itertools import combinations
 from typing import final
 
-from piezo_sym.expressions.calculus import add, mul, neg, power
+from piezo_sym.expressions.calculus import add, clause, mul, neg, power
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ONE,
@@ -36,9 +36,10 @@ from piezo_sym.expressions.tree import (
     replaced,
     walk,
 )
-from piezo_sym.proofs.facts import Clause, facts_on, facts_on_two
 from piezo_sym.spec.names import fresh
 
+#: A disjunction: at least one of these comparisons holds.
+Clause = tuple[Cmp, ...]
 #: With more functions than these, no facts relate pairs of them.
 MOST_ALIKE = 8
 
@@ -172,8 +173,7 @@ def ratio(law: Expr) -> Ratio:
             return Ratio(top, bottom) if exponent > 0 else Ratio(bottom, top)
         case If(then, Cmp(op, left, right), other):  # its quotients have symbols of their own
             return Ratio(If(_top(then), Cmp(op, _top(left), _top(right)), _top(other)))
-    msg = f"{type(law).__name__} is not rational"
-    raise TypeError(msg)
+    raise TypeError(f"{type(law).__name__} is not rational")
 
 
 def _top(law: Expr) -> Expr:
@@ -239,3 +239,36 @@ def cleared(condition: Cmp) -> Cmp:
 def signed(value: Ratio) -> Expr:
     """Return a polynomial with the sign of a quotient: top times bottom."""
     return value.top if value.bottom == ONE else mul(value.top, value.bottom)
+
+
+def facts_on(function: str, exponent: Fraction | Expr, x: Expr, y: Expr) -> Iterator[Clause]:
+    """Yield bounds on y = f(x) that hold for every real x: outside its domain f is unrestricted.
+
+    A ``root`` is the power `exponent` of x; the exponent of ``pow`` is a tree.
+    """
+    if isinstance(exponent, Fraction) and function == "root":  # y**q = x**p defines x**(p/q) >= 0
+        undefined = Cmp("<" if exponent > 0 else "<=", x, ZERO)
+        yield (undefined, Cmp(">=", y, ZERO))
+        root = power(y, Fraction(exponent.denominator))
+        inside = power(x, abs(Fraction(exponent.numerator)))
+        sides = (root, inside) if exponent > 0 else (mul(root, inside), ONE)
+        yield (undefined, Cmp("=", *sides))
+    elif function in RECORDS:
+        yield from (clause(text, x, y) for text in RECORDS[function].facts)
+
+
+def facts_on_two(
+    function: str, exponent: Fraction | Expr, one: tuple[Expr, Expr], other: tuple[Expr, Expr]
+) -> Iterator[Clause]:
+    """Yield clauses that relate two pairs (argument, value) of one function and exponent."""
+    (x, y), (a, b) = one, other
+    record = RECORDS.get(function)
+    rising = record.monotone if record else isinstance(exponent, Fraction) and exponent > 0
+    op = "<=" if record else "<"
+    limited = record.domain if record else True
+    undefined = (Cmp(op, x, ZERO), Cmp(op, a, ZERO)) if limited else ()
+    if rising:
+        yield (*undefined, Cmp(">", x, a), Cmp("<=", y, b))
+        yield (*undefined, Cmp("<", x, a), Cmp(">=", y, b))
+    elif function != "root":
+        yield (Cmp("!=", x, a), Cmp("=", y, b))

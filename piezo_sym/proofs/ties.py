@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 
 import sympy as sp
 
-from piezo_sym.algebra.coefficients import coefficient
+from piezo_sym.algebra.symbols import coefficient
 from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Div, Expr, Sym, names, replace
 from piezo_sym.iphs import IPHS

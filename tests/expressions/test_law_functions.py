@@ -23,7 +23,7 @@ from piezo_sym.expressions.dimensions import dimension, matches
 from piezo_sym.expressions.exact_eval import evaluate, value_of
 from piezo_sym.expressions.functions import FUNCTIONS, RECORDS
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.reflection import reflected
+from piezo_sym.expressions.tidying import reflected
 from piezo_sym.expressions.tree import (
     COMPARED,
     Add,

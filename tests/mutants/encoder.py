@@ -5,7 +5,7 @@ from tests.mutants.specs import spec_of
 
 MUTANTS = mutants_of(
     r"""
-## proofs/facts
+## proofs/rational
 exp: its quadratic bound for all x
   - clause(text, x, y) for text in RECORDS[function].facts
   + clause(text.replace("x < 0 | y >= 1 +", "y >= 1 +"), x, y) for text in RECORDS[function].facts

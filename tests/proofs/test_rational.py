@@ -14,8 +14,16 @@ from piezo_sym.expressions.functions import FUNCTIONS as FUNCTIONS_OF
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ONE, Cmp, Div, Expr, Mul, Num, Pow, Sym, names, walk
-from piezo_sym.proofs.facts import facts_on, facts_on_two
-from piezo_sym.proofs.rational import Part, Ratio, cleared, parts_of, ratio, signed
+from piezo_sym.proofs.rational import (
+    Part,
+    Ratio,
+    cleared,
+    facts_on,
+    facts_on_two,
+    parts_of,
+    ratio,
+    signed,
+)
 from tests.spec.spec_laws import laws, steady
 
 POINTS = 3000

@@ -6,8 +6,8 @@ from hypothesis import assume, given
 
 from piezo_sym.expressions.calculus import neg
 from piezo_sym.expressions.parse import parse_law
-from piezo_sym.expressions.reflection import reflected
 from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tidying import reflected
 from tests.proofs.test_branches import VALUES, close, value
 from tests.spec.spec_laws import laws, steady
 
