@@ -64,7 +64,7 @@ def settled(node: Expr, positive: Collection[str]) -> Expr:
     inner = rebuild(node, lambda part: settled(part, positive))
     match inner:
         case If(then, Cmp(op, left, right), other):
-            sign = _sign(add(left, neg(right)), positive)
+            sign = sign_of(add(left, neg(right)), positive)
             if sign is not None:
                 return then if COMPARED[op](sign, 0) else other
         case Pow(Neg(arg), exponent) if exponent % 2 == 0:
@@ -72,7 +72,7 @@ def settled(node: Expr, positive: Collection[str]) -> Expr:
     return inner
 
 
-def _sign(node: Expr, positive: Collection[str]) -> int | None:
+def sign_of(node: Expr, positive: Collection[str]) -> int | None:
     """Return the sign of a tree, if it is the same for all values of its names."""
     match node:
         case Num(value):
@@ -80,14 +80,16 @@ def _sign(node: Expr, positive: Collection[str]) -> int | None:
         case Sym(name):
             return 1 if name in positive else None
         case Neg(arg):
-            inner = _sign(arg, positive)
+            inner = sign_of(arg, positive)
             return None if inner is None else -inner
         case Mul(left, right) | Div(left, right):
-            one, two = _sign(left, positive), _sign(right, positive)
+            one, two = sign_of(left, positive), sign_of(right, positive)
             return None if one is None or two is None else one * two
         case Add(terms):
-            signs = {_sign(term, positive) for term in terms}
+            signs = {sign_of(term, positive) for term in terms}
             return signs.pop() if len(signs) == 1 else None
+        case Pow(base, _) if sign_of(base, positive) == 1:
+            return 1
     return None
 
 

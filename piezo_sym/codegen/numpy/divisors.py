@@ -5,10 +5,11 @@ computes both sides of a choice, and Python's own floats raise an error where th
 NumPy's give inf, as C does.  What is positive by its form divides without error.
 """
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable
 
 from piezo_sym.codegen.program import Quantity
-from piezo_sym.expressions.tree import Add, Div, Expr, If, Mul, Node, Num, Pow, Sym, names, walk
+from piezo_sym.expressions.tidying import sign_of
+from piezo_sym.expressions.tree import Div, Expr, If, Node, Pow, Sym, names, walk
 
 
 def divisors(
@@ -19,15 +20,13 @@ def divisors(
 ) -> frozenset[str]:
     """Return the parameters by which choices divide other parameters, or of which they take roots.
 
-    Parameters
-    ----------
-    roots, quantities : the trees of one function, the quantities in order.
-    parameters : names of Python's floats; quantities made of them alone are floats, too.
-    positive : those that are positive in the domain; b - r of two such may be zero.
+    `parameters` are names of Python's floats; quantities made of them alone are floats, too.  Those
+    in `positive` are so in the domain; b - r of two such may be zero.
     """
-    values, floats = {q.name: q.value for q in quantities}, {*parameters}
+    values, floats, above = {q.name: q.value for q in quantities}, {*parameters}, {*positive}
     for name, value in values.items():
         floats |= {name} if {*names(value)} <= floats else set()
+        above |= {name} if sign_of(value, above) == 1 else set()
     trees = [*roots, *values.values()]
     left: list[Node] = [n for tree in trees for n in walk(tree) if isinstance(n, If)]
     seen, found = set[str](), set[str]()
@@ -37,7 +36,7 @@ def divisors(
                 seen.add(part.name)
                 left.append(values[part.name])
             below = _below(part)
-            if below and {*names(part)} <= floats and not _is_positive(below, positive, values):
+            if below and {*names(part)} <= floats and sign_of(below, above) != 1:
                 found.update(names(below))
     for name in reversed(values):
         found.update(names(values[name]) if name in found else ())
@@ -52,20 +51,3 @@ def _below(node: Node) -> Expr | None:
         case Pow(base, exponent) if exponent < 0 or exponent.denominator != 1:
             return base
     return None
-
-
-def _is_positive(node: Expr, positive: Collection[str], values: Mapping[str, Expr]) -> bool:
-    """Return whether a tree has no part that may be zero or negative."""
-    match node:
-        case Num(value):
-            return value > 0
-        case Sym(name):
-            known = name in values and _is_positive(values[name], positive, values)
-            return known or name in positive
-        case Add(parts):
-            return all(_is_positive(part, positive, values) for part in parts)
-        case Mul(left, right) | Div(left, right):
-            return all(_is_positive(part, positive, values) for part in (left, right))
-        case Pow(base, _):
-            return _is_positive(base, positive, values)
-    return False
