@@ -146,7 +146,7 @@ def _derivatives(model: Model) -> Any:
     """
     q = quantities_of(derive(model))
     rows = {function.name: function.rows for function in functions_of(q)}
-    program, new = program_of(q, ()), Names(q.taken)
+    program, new = program_of(q), Names(q.taken)
     n, m = len(program.states), len(program.inputs)
     entries, derivatives = jacobian_of(
         (*rows["rhs"], *rows["outputs"]),

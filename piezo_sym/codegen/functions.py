@@ -4,7 +4,7 @@ Input: the quantities of a system.  Output: `ModuleFunction` records, rows in th
 ports and processes.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.program import ModuleFunction, Names, OutputRow, Quantity, bank_of
@@ -14,13 +14,14 @@ from piezo_sym.expressions.text import signed
 from piezo_sym.expressions.tree import ONE, Expr, Sym, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.elements import ElementRow, element_rows, follower_rates, in_words
+from piezo_sym.network import Driven
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
     DissipativePort,
     Exchange,
     HeatInput,
-    Port,
+    Source,
 )
 
 STATE_INPUT, STATE = ("x", "u", "p"), ("x", "p")
@@ -68,9 +69,9 @@ def functions_of(q: Quantities) -> tuple[ModuleFunction, ...]:
         ("heat", heats_of(q)),
         ("entropy_production", productions_of(q)),
     ]
-    scalars = ("energy", "entropy")
     return tuple(
-        ModuleFunction(name, *FUNCTIONS[name], rows, name in scalars) for name, rows in functions
+        ModuleFunction(name, *FUNCTIONS[name], rows, name in {"energy", "entropy"})
+        for name, rows in functions
     )
 
 
@@ -101,19 +102,11 @@ def elements_of(
         for n in range(len(given[0][0].rows))
     ]
     words |= in_words({"answer": answers})
-    rows = (row._replace(value=_with_values(row.value, words)) for row in element_rows(iphs))
-    return tuple(rows), tuple(named)
-
-
-def _with_values(value: Expr, words: Mapping[str, Expr]) -> Expr:
-    """Return an expression with `words` replaced; one without any keeps its spelling."""
-    return value if words.keys().isdisjoint(names(value)) else inserted(value, words)
-
-
-def element_function(elements: Iterable[ElementRow]) -> ModuleFunction:
-    """Return the function of the quantities of all elements."""
-    rows = tuple(OutputRow(Slot(row.name, row.bank), row.value) for row in elements)
-    return ModuleFunction("elements", *FUNCTIONS["elements"], rows)
+    found = list[ElementRow]()
+    for entry in element_rows(iphs):
+        spelled = words.keys().isdisjoint(names(entry.value))  # a value without words stays so
+        found.append(entry if spelled else entry._replace(value=inserted(entry.value, words)))
+    return tuple(found), tuple(named)
 
 
 def rates_of(q: Quantities) -> tuple[OutputRow, ...]:
@@ -158,49 +151,43 @@ def _entropy_rate(n: int, q: Quantities) -> Expr:
 
 def exchanges_of(q: Quantities) -> Iterator[OutputRow]:
     """Yield the entropy rate into a body from each heat exchange or heat source."""
-    for entry in q.ports:
-        port = entry.port
+    for _, port in q.ports:
         if isinstance(port, Exchange | HeatInput):
-            yield OutputRow(Slot(port.body), _definition_input(port, Sym(port.input), q))
+            yield OutputRow(Slot(port.body), _definition_input(port, q))
 
 
 def _definition_inputs(q: Quantities) -> list[Expr]:
     """Return the inputs u of Definition 1, one per port."""
-    return [_definition_input(p.port, u, q) for p, u in zip(q.ports, q.inputs, strict=True)]
+    return [_definition_input(port, q) for _, port in q.ports]
 
 
-def _definition_input(port: Port, u: Expr, q: Quantities) -> Expr:
-    """Return the input of Definition 1 for a port: u itself, P/T or lam*(T_e/T - 1)."""
-    if not isinstance(port, Exchange | HeatInput):
-        return u
-    ratio = div(u, Sym(q.bodies[port.body].temperature))
+def _definition_input(port: Driven, q: Quantities) -> Expr:
+    """Return the input of Definition 1 for a port: its input itself, P/T or lam*(T_e/T - 1)."""
+    if isinstance(port, Source):
+        return Sym(port.input)
+    ratio = div(Sym(port.input), Sym(q.bodies[port.body].temperature))
     return mul(port.conductance, add(ratio, neg(ONE))) if isinstance(port, Exchange) else ratio
 
 
 def _outputs(q: Quantities) -> tuple[OutputRow, ...]:
-    return tuple(OutputRow(Slot(placed.element), _output(n, q)) for n, placed in enumerate(q.ports))
-
-
-def _output(n: int, q: Quantities) -> Expr:
-    port = q.ports[n].port
-    if isinstance(port, Exchange | HeatInput):
-        return Sym(q.bodies[port.body].temperature)
-    return add(
-        *q.product(q.iphs.system.G.T, n, q.costates),
-        *q.product(q.iphs.system.D, n, q.outputs),
-        *q.product(q.iphs.system.N, n, q.inputs),
-    )
+    rows, system = [], q.iphs.system
+    blocks = (system.G.T, q.costates), (system.D, q.outputs), (system.N, q.inputs)
+    for n, (placed, port) in enumerate(q.ports):
+        if isinstance(port, Source):
+            value = add(*(t for block, factors in blocks for t in q.product(block, n, factors)))
+        else:
+            value = Sym(q.bodies[port.body].temperature)
+        rows.append(OutputRow(Slot(placed.element), value))
+    return tuple(rows)
 
 
 def supply_of(q: Quantities) -> tuple[OutputRow, ...]:
     """Return the power supplied through each port."""
     rows = []
-    for y, placed, u in zip(_outputs(q), q.ports, q.inputs, strict=True):
-        power = mul(y.value, u)
-        if isinstance(placed.port, Exchange):
-            power = mul(placed.port.conductance, add(u, neg(y.value)))
-        elif isinstance(placed.port, HeatInput):
-            power = u
+    for y, (_, port), u in zip(_outputs(q), q.ports, q.inputs, strict=True):
+        power: Expr = u if isinstance(port, HeatInput) else mul(y.value, u)
+        if isinstance(port, Exchange):
+            power = mul(port.conductance, add(u, neg(y.value)))
         rows.append(OutputRow(y.slot, power))
     return tuple(rows)
 

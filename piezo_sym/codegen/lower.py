@@ -7,37 +7,36 @@ processes and inputs; laws keep the spelling of the spec.
 from collections.abc import Iterator
 from dataclasses import replace
 
+from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.differences import sharp_program
-from piezo_sym.codegen.functions import element_function, elements_of, functions_of
+from piezo_sym.codegen.functions import FUNCTIONS, elements_of, functions_of
 from piezo_sym.codegen.jacobian import jacobian_of
-from piezo_sym.codegen.program import Described, ModuleFunction, Names, Program
+from piezo_sym.codegen.program import Described, ModuleFunction, Names, OutputRow, Program
 from piezo_sym.codegen.quantities import Quantities, quantities_of
 from piezo_sym.iphs import IPHS
+from piezo_sym.network import Driven
 from piezo_sym.spec.circuit import Circuit, Placed
-from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
+from piezo_sym.spec.elements.ports import Source
 from piezo_sym.spec.tables import banks
 
 
 def lower(iphs: IPHS, verdict: str, known: Quantities | None = None) -> Program:
-    """Return the program of a system.
+    """Return the program of a system, whose quantities may be known.
 
-    Parameters
-    ----------
-    iphs : from `derive`.
-    verdict : one line on what is proved, for the head of printed modules.
-    known : its quantities, if they have been found.
+    `verdict` is one line on what is proved, for the head of printed modules.
     """
     q = known or quantities_of(iphs)
     functions = functions_of(q)
     rates = next(function for function in functions if function.name == "rhs").rows
     names = Names(q.taken)
     elements, named = elements_of(q, rates, names)
+    rows = tuple(OutputRow(Slot(row.name, row.bank), row.value) for row in elements)
     entries, derivatives = jacobian_of(rates, q.states, q.defined, q.lanes, names, q.temperatures)
     program = replace(
-        program_of(q, functions),
+        program_of(q),
         verdict=verdict,
-        functions=(*functions, element_function(elements)),
-        elements=tuple(Described(*row[:4]) for row in elements),
+        functions=(*functions, ModuleFunction("elements", *FUNCTIONS["elements"], rows)),
+        elements=tuple(Described(row.name, row.unit, row.doc, row.bank) for row in elements),
         quantities=(*q.defined, *named, *derivatives),
         jacobian=entries,
         limits=q.limits,
@@ -46,8 +45,8 @@ def lower(iphs: IPHS, verdict: str, known: Quantities | None = None) -> Program:
     return sharp_program(program)
 
 
-def program_of(q: Quantities, functions: tuple[ModuleFunction, ...]) -> Program:
-    """Return a program of some functions, without Jacobian, limits and elements."""
+def program_of(q: Quantities) -> Program:
+    """Return a program without functions, Jacobian, limits and elements."""
     model = q.iphs.model
     return Program(
         name=model.name,
@@ -58,7 +57,7 @@ def program_of(q: Quantities, functions: tuple[ModuleFunction, ...]) -> Program:
         parameters=tuple(_parameters(q.iphs.circuit)),
         inputs=tuple(Described(n, i.dimension.si, i.doc) for n, i in model.inputs.items()),
         states=q.states,
-        outputs=tuple(_output(placed) for placed in q.ports),
+        outputs=tuple(_output(*pair) for pair in q.ports),
         processes=tuple(_processes(q.iphs)),
         bodies=tuple(Described(n, "K", f"temperature of thermal_mass '{n}'") for n in q.bodies),
         defaults={
@@ -68,7 +67,7 @@ def program_of(q: Quantities, functions: tuple[ModuleFunction, ...]) -> Program:
         elements=(),
         counts=banks(model),
         quantities=q.defined,
-        functions=functions,
+        functions=(),
         jacobian=(),
         limits=(),
         taken=q.taken,
@@ -85,13 +84,10 @@ def _parameters(circuit: Circuit) -> Iterator[Described]:
         yield Described(name, entry.dimension.si, entry.doc, owners.get(name))
 
 
-def _output(placed: Placed) -> Described:
-    match placed.port:
-        case Source() as port:
-            return Described(placed.element, port.units[1], port.doc)
-        case Exchange() | HeatInput() as port:
-            return Described(placed.element, "K", f"temperature of thermal_mass '{port.body}'")
-    raise TypeError(f"{placed.element} is no port of an input")
+def _output(placed: Placed, port: Driven) -> Described:
+    if isinstance(port, Source):
+        return Described(placed.element, port.units[1], port.doc)
+    return Described(placed.element, "K", f"temperature of thermal_mass '{port.body}'")
 
 
 def _processes(iphs: IPHS) -> Iterator[Described]:

@@ -5,34 +5,25 @@ ones, and the products of Definition 1 as expressions in them.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import final
 
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.algebra.symbols import coefficient
 from piezo_sym.codegen.differences import with_excess
-from piezo_sym.codegen.products import SUMS, product, slip_rate, sums_in
 from piezo_sym.codegen.program import Described, Limit, Names, Quantity
 from piezo_sym.expressions.calculus import add, div, mul, neg
-from piezo_sym.expressions.tree import Call, Expr, LaneSum, Mul, Sym, names, replace
+from piezo_sym.expressions.tree import Call, Expr, LaneSum, Mul, Sym, names
+from piezo_sym.expressions.tree import replace as substituted
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
-from piezo_sym.network import port_order
+from piezo_sym.network import Driven, port_order
 from piezo_sym.spec.circuit import Placed
-from piezo_sym.spec.elements.ports import (
-    Body,
-    Conductor,
-    Coupling,
-    DissipativePort,
-    Exchange,
-    HeatInput,
-    Source,
-    Storage,
-)
+from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, DissipativePort, Storage
 from piezo_sym.spec.tables import condition_text, greater
 
-COSTATES = "co-states dU/dx"
+COSTATES, SUMS = "co-states dU/dx", "sums over lanes"
 #: The quantity that is the difference of a temperature and a constant.
 Excesses = Mapping[tuple[Sym, Sym], Quantity]
 
@@ -73,7 +64,7 @@ class Quantities:
         return {body.law: Sym(body.temperature) for body in self.bodies.values()}
 
     @cached_property
-    def ports(self) -> tuple[Placed, ...]:
+    def ports(self) -> tuple[tuple[Placed, Driven], ...]:
         """The ports of inputs, in the order of the outputs."""
         return port_order(self.iphs.circuit)
 
@@ -117,7 +108,7 @@ def quantities_of(iphs: IPHS) -> Quantities:
     new = Names({*circuit.names, *(str(s.name) for s, _ in (*iphs.slopes, *iphs.shares))})
     costates = tuple(Sym(costate_name(port)) for _, port in circuit.of(Storage, Body))
     outputs = tuple(Sym(port.output) for _, port in circuit.of(DissipativePort, Conductor))
-    inputs = tuple(Sym(_input(placed)) for placed in port_order(circuit))
+    inputs = tuple(Sym(port.input) for _, port in port_order(circuit))
     excesses = _excesses(iphs, new)
     laws = _laws(iphs, excesses)
     limits = tuple(_limits(iphs, excesses))
@@ -144,12 +135,6 @@ def quantities_of(iphs: IPHS) -> Quantities:
 
 def _by_value(defined: Sequence[Quantity]) -> dict[Expr, Sym]:
     return {item.value: Sym(item.name) for item in reversed(defined)}
-
-
-def _input(placed: Placed) -> str:
-    if isinstance(placed.port, Source | Exchange | HeatInput):
-        return placed.port.input
-    raise TypeError(f"{placed.element} is no port of an input")
 
 
 def _excesses(iphs: IPHS, new: Names) -> dict[tuple[Sym, Sym], Quantity]:
@@ -232,7 +217,7 @@ def _processes(
                 if not isinstance(rate, Sym):
                     bank = None if lanes.isdisjoint(names(rate)) else placed.bank
                     defined.append(Quantity(port.rate, rate, bank, "rates of slips"))
-            force, law = z, replace(laws[port.output], letters)
+            force, law = z, substituted(laws[port.output], letters)
         defined.append(Quantity(port.output, law, placed.bank, "dissipative laws"))
         yield tuple(defined), force, z
 
@@ -250,3 +235,44 @@ def _totals(
         if energy.bank:
             word = f"energy_{iphs.system.states[energy.rows[0]].label}"
             yield Quantity(new(word), LaneSum(energy.law, energy.bank), None, SUMS)
+
+
+def product(
+    block: LaneMatrix, row: int, factors: Sequence[Expr], sums: Mapping[Expr, Sym]
+) -> Iterator[Expr]:
+    """Yield the terms of ``(block @ factors)[row]``, column by column, `sums` by their names."""
+    for c, full, own in block.by_row.get(row, ()):
+        bank, factor = block.cols[c].bank, factors[c]
+        if full != 0:
+            yield mul(coefficient(full), sums[LaneSum(factor, bank)] if bank else factor)
+        if own != 0:
+            yield mul(coefficient(own), factor)
+
+
+def sums_in(blocks: Sequence[LaneMatrix], factors: Sequence[Sym], new: Names) -> Iterator[Quantity]:
+    """Yield the sums over lanes in products of blocks and some factors."""
+    entries = ((b.cols[c], c, full) for b in blocks for (_, c), full, _ in b.entries())
+    columns = {c: slot.bank for slot, c, full in entries if full != 0}
+    for c, bank in sorted(columns.items()):
+        if bank:
+            yield Quantity(new(f"sum_{factors[c].name}"), LaneSum(factors[c], bank), None, SUMS)
+
+
+def slip_rate(
+    iphs: IPHS,
+    state: str,
+    own: int,
+    given: tuple[Sequence[Sym], Sequence[Sym]],
+    sums: Mapping[Expr, Sym],
+) -> Iterator[Expr]:
+    """Yield the terms of the rate of a state, without those of its own slip, process `own`."""
+    system, (costates, inputs) = iphs.system, given
+    row = [slot.label for slot in system.states].index(state)
+    yield from product(system.J0, row, costates, sums)
+    yield from product(system.G, row, inputs, sums)
+    laws = [port.output for _, port in iphs.circuit.of(DissipativePort, Conductor)]
+    full, lanes = (
+        {at: b for at, b in part.items() if at[1] != own} for part in (system.B.full, system.B.own)
+    )
+    rest = replace(system.B, full=full, own=lanes)
+    yield from (neg(term) for term in product(rest, row, [*map(Sym, laws)], sums))

@@ -4,9 +4,10 @@ Input: a `Circuit`, its symbols and its junction.  Output: the `System` in named
 each name the expression behind it, stated once.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import final
 
 import sympy as sp
@@ -15,12 +16,14 @@ from piezo_sym.algebra.integrals import integral
 from piezo_sym.algebra.lanes import vector
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError, SpecError, quote, with_article
+from piezo_sym.expressions.calculus import neg
 from piezo_sym.expressions.energies import antiderivative
+from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Expr, Sym
-from piezo_sym.iphs.logarithms import with_values
+from piezo_sym.expressions.tidying import collected
+from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, If, Sym, names, rebuild, walk
 from piezo_sym.iphs.system import System
-from piezo_sym.network import Junction, Slope, port_order
+from piezo_sym.network import Driven, Junction, Slope, port_order
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PowerVariable
@@ -29,12 +32,17 @@ from piezo_sym.spec.elements.ports import (
     Conductor,
     Coupling,
     DissipativePort,
-    Exchange,
     HeatInput,
     Source,
     Storage,
 )
+from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import greater, starts
+
+Point = Mapping[str, Value]
+#: Values of a state that are looked at, times its own start and the parameters of its energy.
+TIMES = (Fraction(1), Fraction(-1), Fraction(1, 2), Fraction(-1, 2), Fraction(2), Fraction(-2))
+NEAR = Fraction(1, 10**12)
 
 
 def costate_name(port: Storage | Body) -> str:
@@ -54,9 +62,8 @@ def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> Sys
     rows = {placed.element: n for n, (placed, port) in enumerate(stores) if isinstance(port, Body)}
     processes = [port for _, port in circuit.of(DissipativePort, Conductor)]
     costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}
-    inputs = {
-        n: _input(placed.port, circuit, symbols) for n, placed in enumerate(port_order(circuit))
-    }
+    driven = enumerate(port_order(circuit))
+    inputs = {n: _input(port, circuit, symbols) for n, (_, port) in driven}
     outputs = {n: symbols[port.output] for n, port in enumerate(processes)}
     return System(
         states=junction.states,
@@ -75,19 +82,15 @@ def system_of(circuit: Circuit, symbols: SymbolTable, junction: Junction) -> Sys
     )
 
 
-def _input(port: object, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
+def _input(port: Driven, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
     """Return a port's entry of the input vector u: its input, P/T or lam*(T_e/T - 1)."""
-    match port:
-        case Source():
-            return symbols[port.input]
-        case Exchange() | HeatInput():
-            temperature = symbols[circuit.body(port.body).temperature]
-            ratio = symbols[port.input] / temperature
-            if isinstance(port, HeatInput):
-                return ratio
-            return symbols.law(port.conductance, {}) * (ratio - 1)
-    msg = f"{type(port).__name__} is no port of an input"
-    raise TypeError(msg)
+    if isinstance(port, Source):
+        return symbols[port.input]
+    temperature = symbols[circuit.body(port.body).temperature]
+    ratio = symbols[port.input] / temperature
+    if isinstance(port, HeatInput):
+        return ratio
+    return symbols.law(port.conductance, {}) * (ratio - 1)
 
 
 @final
@@ -112,7 +115,7 @@ def energies_of(circuit: Circuit) -> tuple[Energy, ...]:
     )
     rows: dict[tuple[Expr, str | None, bool], tuple[int, ...]] = {}
     for n, (placed, port) in enumerate(circuit.of(Storage, Body)):
-        law = port.energy or with_values(
+        law = port.energy or _with_values(
             _integral(placed.element, port, positive), port.state, circuit
         )
         key = law, placed.bank, port.energy is None
@@ -131,6 +134,50 @@ def _integral(element: str, port: Storage | Body, positive: frozenset[str]) -> E
         remedy = f"give the energy itself instead: energy = '...', a law of {port.state}"
         raise SpecError(what, f"elements.{element}", expected, remedy)
     return energy
+
+
+def _with_values(energy: Expr, state: str, circuit: Circuit) -> Expr:
+    """Return an energy with log(-a) in place of log(a) where a < 0 in the domain.
+
+    1/(q - a) integrates to log(q - a) as well as to log(a - q), of one slope; integration does not
+    know which has a value.  Nothing rests on the choice: rows welldef and energy show the rest.
+    That is judged at some points, on each branch at those that lie on it; they satisfy the
+    conditions on parameters, inputs and this state. Where signs differ, the first decides.
+    """
+    if not any(isinstance(n, Call) and n.function == "log" for n in walk(energy)):
+        return energy
+    used = {state, *circuit.model.parameters, *circuit.model.inputs}
+    domain = [c.tree for c in circuit.conditions if used.issuperset(names(c.tree))]
+    points = [*_points(energy, state, circuit.model)]
+    return _turned(energy, [point for point in points if all_hold(domain, point)])
+
+
+def _points(energy: Expr, state: str, model: Model) -> Iterator[Point]:
+    """Yield the spec's own values, of the first lane and the last, with some values of a state."""
+    own: dict[str, Value] = {name: Fraction(entry.si) for name, entry in model.inputs.items()}
+    for lane in (0, -1):
+        own |= {name: Fraction(p.lanes[lane]) for name, p in model.parameters.items()}
+        with suppress(ArithmeticError, ValueError):
+            start = value_of(starts(model, state)[lane], own)
+            sizes = [own[name] for name in names(energy) if name in model.parameters]
+            yield from ({**own, state: start + size * NEAR} for size in (0, *sizes))
+            yield from ({**own, state: start - size * NEAR} for size in sizes)
+            yield from ({**own, state: size * times} for size in (start, *sizes) for times in TIMES)
+
+
+def _turned(node: Expr, points: Sequence[Point]) -> Expr:
+    match node:
+        case If(then, condition, other):
+            on = [point for point in points if all_hold((condition,), point)]
+            off = [point for point in points if all_hold((condition,), point) is False]
+            return If(_turned(then, on), condition, _turned(other, off))
+        case Call("log", (arg,)):
+            inner = _turned(arg, points)
+            below = [all_hold((Cmp("<", inner, ZERO),), point) for point in points]
+            above = [all_hold((Cmp(">", inner, ZERO),), point) for point in points]
+            turned = any(below) and (below[0] or not any(above))
+            return Call("log", (collected(neg(inner)) if turned else inner,))
+    return rebuild(node, lambda part: _turned(part, points))
 
 
 Definitions = Iterator[tuple[sp.Symbol, sp.Expr]]

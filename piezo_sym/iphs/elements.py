@@ -32,20 +32,13 @@ V = TypeVar("V")
 
 
 class ElementRow(NamedTuple):
-    """A quantity of an element: its name, SI unit, text and bank, and its value."""
+    """A quantity of an element: its name, SI unit, text, value and bank."""
 
     name: str
     unit: str
     doc: str
-    bank: str | None
     value: Expr
-
-
-class _Quantity(NamedTuple):
-    quantity: str
-    unit: str
-    doc: str
-    value: Expr
+    bank: str | None = None
 
 
 def in_words(given: Mapping[str, Sequence[V]]) -> dict[str, V]:
@@ -72,8 +65,8 @@ def element_rows(iphs: IPHS) -> tuple[ElementRow, ...]:
     for name, element in iphs.model.elements.items():
         bank = element.bank_of(name)
         for entry in elements.quantities(name):
-            doc = f"{entry.doc} {element.kind} '{name}'"
-            rows.append(ElementRow(f"{name}.{entry.quantity}", entry.unit, doc, bank, entry.value))
+            words = f"{name}.{entry.name}", entry.unit, f"{entry.doc} {element.kind} '{name}'"
+            rows.append(ElementRow(*words, entry.value, bank))
     return tuple(rows)
 
 
@@ -90,10 +83,10 @@ class _Elements:
         for kinds in ((Storage, Body), (DissipativePort, Conductor), (Coupling,)):
             alike = (placed for placed in circuit.ports if isinstance(placed.port, kinds))
             self.places |= {id(placed): n for n, placed in enumerate(alike)}
-        self.places |= {id(placed): n for n, placed in enumerate(port_order(circuit))}
+        self.places |= {id(placed): n for n, (placed, _) in enumerate(port_order(circuit))}
         self.joined = {m.element: (m, j) for j in iphs.junction.joints for m in j.members}
 
-    def quantities(self, name: str) -> Iterator[_Quantity]:
+    def quantities(self, name: str) -> Iterator[ElementRow]:
         """Yield the quantities of one element."""
         iphs, ports = self.iphs, self.ports[name]
         if name in self.joined:
@@ -101,7 +94,7 @@ class _Elements:
             costate, store, rate = joint.costate(member), member.store, _joined_rate(iphs, member)
             yield from self._branch(store.domain, store.imposes, costate, rate)
             stored = inserted(member.energy, {store.costate: costate})
-            yield _Quantity("energy", "J", "energy of", stored)
+            yield ElementRow("energy", "J", "energy of", stored)
             return
         stores = [placed for placed in ports if isinstance(placed.port, Storage | Body)]
         if len(ports) == 1 and not stores:
@@ -112,17 +105,17 @@ class _Elements:
             yield from self._store(placed, ports, several)
         if several:
             powers = (mul(Sym(costate_name(port)), rate) for port, rate in map(self._rate, stores))
-            yield _Quantity("power", "W", "power into", add(*powers))
+            yield ElementRow("power", "W", "power into", add(*powers))
         rows = {self.places[id(placed)] for placed in stores}
         for energy in iphs.energies:
             if rows & {*energy.rows}:
-                yield _Quantity("energy", "J", "energy of", energy.law)
+                yield ElementRow("energy", "J", "energy of", energy.law)
         for placed in ports:
             if isinstance(placed.port, DissipativePort):
                 yield self._heat(placed)
                 if placed.port.limit is not None:
                     effort = placed.port.domain.variable(placed.port.imposes.other)
-                    yield _Quantity("limit", effort.unit, "largest effort of", placed.port.limit)
+                    yield ElementRow("limit", effort.unit, "largest effort of", placed.port.limit)
 
     def _branch(
         self,
@@ -133,20 +126,20 @@ class _Elements:
         end: str = "",
         of: str = "of",
         power: Expr | None = None,
-    ) -> Iterator[_Quantity]:
+    ) -> Iterator[ElementRow]:
         """Yield effort and flow of a branch, and its power; `given` is the imposed variable."""
         variables = (given, other) if imposes is domain.effort else (other, given)
         kinds = (domain.effort, domain.effort.other)
         for word, kind, value in zip(("effort", "flow"), kinds, variables, strict=True):
             variable = domain.variable(kind)
-            yield _Quantity(
+            yield ElementRow(
                 word + end, variable.unit, f"{variable.name.replace('_', ' ')} {of}", value
             )
         if not end:
             power = mul(*variables) if power is None else power
-            yield _Quantity("power", "W", "power into", power)
+            yield ElementRow("power", "W", "power into", power)
 
-    def _store(self, placed: Placed, ports: list[Placed], several: bool) -> Iterator[_Quantity]:
+    def _store(self, placed: Placed, ports: list[Placed], several: bool) -> Iterator[ElementRow]:
         port, rate = self._rate(placed)
         for other in ports:
             if isinstance(other.port, DissipativePort):  # a hysteron's resistor, or a slip
@@ -161,10 +154,10 @@ class _Elements:
         assert isinstance(placed.port, Storage | Body)
         return placed.port, _symbol("rate", self.places[id(placed)])
 
-    def _heat(self, placed: Placed) -> _Quantity:
-        return _Quantity("heat", "W", "heat of", _symbol("heat", self.places[id(placed)]))
+    def _heat(self, placed: Placed) -> ElementRow:
+        return ElementRow("heat", "W", "heat of", _symbol("heat", self.places[id(placed)]))
 
-    def _storeless(self, placed: Placed) -> Iterator[_Quantity]:
+    def _storeless(self, placed: Placed) -> Iterator[ElementRow]:
         """Yield the quantities of an element that stores nothing."""
         n = self.places[id(placed)]
         match placed.port:
@@ -175,9 +168,9 @@ class _Elements:
             case Conductor() as port:
                 bodies = map(self.iphs.circuit.body, (port.first, port.second))
                 hot, cold = (Sym(body.temperature) for body in bodies)
-                yield _Quantity("effort", "K", "temperature difference over", add(hot, neg(cold)))
+                yield ElementRow("effort", "K", "temperature difference over", add(hot, neg(cold)))
                 doc = "heat from first to second body by"
-                yield _Quantity("power", "W", doc, _symbol("heat", n))
+                yield ElementRow("power", "W", doc, _symbol("heat", n))
             case Source() as port:
                 pushes = port.imposes is PowerVariable.THROUGH  # into its first node
                 given, output, power = (_symbol(word, n) for word in ("input", "output", "supply"))
@@ -192,7 +185,7 @@ class _Elements:
                     port, _symbol("answer", 2 * n), _symbol("answer", 2 * n + 1)
                 )
 
-    def _coupling(self, port: Coupling, first: Expr, across: Expr) -> Iterator[_Quantity]:
+    def _coupling(self, port: Coupling, first: Expr, across: Expr) -> Iterator[ElementRow]:
         """Yield the quantities of both branches, and the power from the first to the second."""
         one, two = mul(Sym(port.name), across), neg(mul(Sym(port.name), first))
         ends = ((first, one), (across, two)) if port.gyrates else ((one, first), (across, two))
@@ -201,7 +194,7 @@ class _Elements:
             yield from self._branch(
                 domain, PowerVariable.ACROSS, e, f, f"_{n}", f"in branch {n} of"
             )
-        yield _Quantity("power", "W", "power from branch 1 to branch 2 of", mul(*ends[0]))
+        yield ElementRow("power", "W", "power from branch 1 to branch 2 of", mul(*ends[0]))
 
 
 def follower_rates(iphs: IPHS) -> tuple[Expr, ...]:

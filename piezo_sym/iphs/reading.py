@@ -79,13 +79,12 @@ class Reading:
 
 def _terms(block: LaneMatrix, given: LaneMatrix, row: int) -> Iterator[sp.Expr]:
     """Yield the terms of ``(block @ given)[row]`` without expanding products."""
-    for (r, c), full, own in block.entries():
-        if r == row:
-            value, bank = given[c, 0], block.cols[c].bank
-            if full != 0:
-                yield block.lanes.sum(full * value, bank) if bank else full * value
-            if own != 0:
-                yield own * value
+    for c, full, own in block.by_row.get(row, ()):
+        value, bank = given[c, 0], block.cols[c].bank
+        if full != 0:
+            yield block.lanes.sum(full * value, bank) if bank else full * value
+        if own != 0:
+            yield own * value
 
 
 def equations(

@@ -51,12 +51,6 @@ def constant_slope(law: Expr, letter: str) -> Expr | None:
     return None if letter in names(slope) else slope
 
 
-def inverse_field(port: DissipativePort) -> tuple[str, str]:
-    """Return the field and the letter of a resistor's law in its other causality."""
-    given, asked = port.domain.variable(port.imposes), port.domain.variable(port.imposes.other)
-    return asked.name, given.letter
-
-
 def _over(top: Expr, slope: Expr) -> Expr:
     match slope:
         case Div(left, right) if left == ONE:

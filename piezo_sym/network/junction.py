@@ -9,7 +9,7 @@ opaque symbols.  `kirchhoff` solves the junction laws; here their answers become
 checked to preserve power.  `loops` solves linear resistors that determine each other's flow.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import final
 
@@ -83,7 +83,7 @@ class _Blocks:
         self.slots = {
             "E": tuple(Slot(port.state, placed.bank) for placed, port in laws.states),
             "W": tuple(Slot(placed.element, placed.bank) for placed, _ in laws.processes),
-            "u": tuple(Slot(placed.element) for placed in laws.ports),
+            "u": tuple(Slot(placed.element) for placed, _ in laws.ports),
             "R": tuple(Slot(placed.element) for placed, _ in laws.followers),
             "C": tuple(Slot(port.name) for port in laws.ratio for _ in range(2)),
         }
@@ -92,18 +92,21 @@ class _Blocks:
 
     def junction(self) -> Junction:
         """Return the junction, having checked that it preserves power."""
-        J0, N = self._block("E", "E"), self._output("u")
-        B, g, D = -self._block("E", "W"), self._block("E", "u"), self._output("W")
+        J0, N = self._block("E", "E"), self._block("u", "u")
+        B, g, D = -self._block("E", "W"), self._block("E", "u"), self._block("u", "W")
         M = self._block("W", "W")
-        self._check_power(
+        zeros = (
             B - self._block("W", "E").T,
-            g - self._output("E").T,
+            g - self._block("u", "E").T,
             D - self._block("W", "u").T,
             M + M.T,
             self._block("E", "R") + self._block("R", "E").T,
             *(self._block("R", kind) for kind in "WuR"),
             *(self._block(kind, "R") for kind in "Wu"),
         )
+        if not all(difference.is_zero for difference in zeros):
+            what = "the junction laws do not preserve power"
+            raise NetworkError(what, "network", remedy="report this spec: it shows a fault here")
         circuit, joints = join_stores(self.laws)
         loops = loops_of(self.laws, M)
         B, D = loops.columns(B), loops.columns(D)
@@ -128,27 +131,22 @@ class _Blocks:
             divisors=tuple(dict.fromkeys((*divisors, *loops.divisors))),
         )
 
-    def _check_power(self, *zeros: LaneMatrix) -> None:
-        if not all(difference.is_zero for difference in zeros):
-            what = "the junction laws do not preserve power"
-            raise NetworkError(what, "network", remedy="report this spec: it shows a fault here")
+    def _block(self, row: str, col: str) -> LaneMatrix:
+        """Return the matrix of one kind of answers over one kind of givens.
 
-    def _block(self, row: str, col: str, sign: Callable[[int], int] = lambda _: 1) -> LaneMatrix:
-        """Return the matrix of one kind of answers over one kind of givens, rows with a sign."""
+        Rows "u" are outputs y, signed so that y*u is the power put in.
+        """
         parts: tuple[dict[tuple[int, int], sp.Expr], dict[tuple[int, int], sp.Expr]] = ({}, {})
         for (kind, r), answer in self.answers.items():
             if kind == row:
+                sign = self._supply_sign(r) if row == "u" else 1
                 for part, form in zip(parts, answer, strict=True):
-                    part.update(self._entries(r, col, form, sign(r)))
+                    part.update(self._entries(r, col, form, sign))
         return LaneMatrix(self.slots[row], self.slots[col], self.lanes, parts[0], parts[1])
-
-    def _output(self, col: str) -> LaneMatrix:
-        """Return the matrix of the outputs y, signed so that y*u is the power put in."""
-        return self._block("u", col, self._supply_sign)
 
     def _supply_sign(self, n: int) -> int:
         """Return -1 for an across source: the current through it flows out at its first node."""
-        port = self.laws.ports[n].port
+        _, port = self.laws.ports[n]
         return -1 if isinstance(port, Source) and port.imposes is PowerVariable.ACROSS else 1
 
     def _entries(self, row: int, col: str, form: Form, sign: int) -> dict[tuple[int, int], sp.Expr]:
@@ -167,8 +165,8 @@ class _Blocks:
     def _with_heat(self, g: LaneMatrix) -> LaneMatrix:
         """Return the input map with the heat inputs, each into its body's entropy."""
         heat = {
-            (self.rows[placed.port.body], n): sp.S.One
-            for n, placed in enumerate(self.laws.ports)
-            if isinstance(placed.port, Exchange | HeatInput)
+            (self.rows[port.body], n): sp.S.One
+            for n, (_, port) in enumerate(self.laws.ports)
+            if isinstance(port, Exchange | HeatInput)
         }
         return replace(g, full={**g.full, **heat})

@@ -45,6 +45,8 @@ MOST_WORK = 20_000_000
 
 #: An answer: the part that is the same for every lane, and that of the branch's own lane.
 Answer = tuple[Form, Form]
+#: A port of an input.
+Driven = Source | Exchange | HeatInput
 
 
 @final
@@ -57,6 +59,7 @@ class Edge:
     """
 
     placed: Placed
+    port: Storage | DissipativePort | Source | Body
     branch: Branch
     imposes: PowerVariable
     key: tuple[str, int]
@@ -74,11 +77,11 @@ def term_of(label: Any) -> tuple[str, Any]:
     return kind, index
 
 
-def port_order(circuit: Circuit) -> tuple[Placed, ...]:
+def port_order(circuit: Circuit) -> tuple[tuple[Placed, Driven], ...]:
     """Return the ports driven by inputs, in the order of the inputs, then of declaration."""
     inputs = list(circuit.model.inputs)
-    driven = [p for p in circuit.ports if isinstance(p.port, Source | Exchange | HeatInput)]
-    return tuple(sorted(driven, key=lambda placed: inputs.index(placed.port.input)))  # type: ignore[union-attr]
+    driven = [(p, p.port) for p in circuit.ports if isinstance(p.port, Driven)]
+    return tuple(sorted(driven, key=lambda pair: inputs.index(pair[1].input)))
 
 
 @final
@@ -107,20 +110,20 @@ class Laws:
         self.divisors: list[Any] = []
 
     def _edges(self) -> Iterator[Edge]:
-        for n, (placed, port) in enumerate(self.states):
-            if isinstance(port, Storage):
-                yield Edge(placed, port.branch, port.imposes, ("E", n), 1)
+        for n, (placed, store) in enumerate(self.states):
+            if isinstance(store, Storage):
+                yield Edge(placed, store, store.branch, store.imposes, ("E", n), 1)
             elif branch := self.circuit.pumped.get(placed.element):
-                yield Edge(placed, branch, port.imposes, ("E", n), 1)
-        for n, (placed, store) in enumerate(self.followers):
-            yield Edge(placed, store.branch, store.imposes.other, ("R", n), 1)
+                yield Edge(placed, store, branch, store.imposes, ("E", n), 1)
+        for n, (placed, last) in enumerate(self.followers):
+            yield Edge(placed, last, last.branch, last.imposes.other, ("R", n), 1)
         for n, (placed, process) in enumerate(self.processes):
             if isinstance(process, DissipativePort):
-                yield Edge(placed, process.branch, process.imposes, ("W", n), 1)
-        for n, placed in enumerate(self.ports):
-            if isinstance(placed.port, Source):
-                sign = 1 if placed.port.imposes is PowerVariable.ACROSS else -1  # it pushes into a
-                yield Edge(placed, placed.port.branch, placed.port.imposes, ("u", n), sign)
+                yield Edge(placed, process, process.branch, process.imposes, ("W", n), 1)
+        for n, (placed, port) in enumerate(self.ports):
+            if isinstance(port, Source):
+                sign = 1 if port.imposes is PowerVariable.ACROSS else -1  # it pushes into a
+                yield Edge(placed, port, port.branch, port.imposes, ("u", n), sign)
 
     @cached_property
     def answers(self) -> dict[tuple[str, int], Answer]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from piezo_sym.algebra.linear import Form, SingularError
 from piezo_sym.errors import NetworkError, with_article
-from piezo_sym.network.inverse import inverse_field, turn
+from piezo_sym.network.inverse import turn
 from piezo_sym.network.kirchhoff import Edge, Laws, term_of
 from piezo_sym.network.nodes import branches, is_inner, is_reference
 from piezo_sym.spec.circuit import Placed
@@ -35,7 +35,7 @@ def refusal(laws: Laws, singular: SingularError, why: str = "") -> NetworkError:
 
 def _chain(bank: str, edges: list[Edge]) -> NetworkError:
     """Return the error of cells in series that fix the through variable they share."""
-    port = _port(edges[0])
+    port = edges[0].port
     word = port.domain.through.name.replace("_", " ")
     names = _quoted([e.placed.element for e in edges])
     what = f"the {word} that cells in series share is fixed by {names}"
@@ -53,7 +53,7 @@ def _edges(laws: Laws, relation: Form) -> list[Edge]:
 
 def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> NetworkError:
     names = list(dict.fromkeys(edge.placed.element for edge in edges))
-    ports = list(map(_port, edges))
+    ports = [edge.port for edge in edges]
     words = list(dict.fromkeys(p.domain.variable(p.imposes).name for p in ports))
     word = words[0].replace("_", " ") if len(words) == 1 else MIXED
     couplings = [placed.element for placed, _ in couplings_in(laws, relation)]
@@ -91,7 +91,7 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
 
 def _of_lanes(laws: Laws, edges: list[Edge]) -> str:
     """Return why a linear law among branches is not turned round: it is of a bank; or ''."""
-    for placed, port in ((edge.placed, _port(edge)) for edge in edges if edge.placed.bank):
+    for placed, port in ((edge.placed, edge.port) for edge in edges if edge.placed.bank):
         if isinstance(port, DissipativePort) and turn(port, laws.circuit.names):
             bank = f"'{placed.element}' is of a bank"
             return f", and {bank}, which has no law for all lanes together"
@@ -102,9 +102,9 @@ def _alone(laws: Laws, edges: list[Edge], word: str, place: str, coupled: bool) 
     """Return the error of one element, or of the lanes of one bank, that nothing lets move."""
     placed, expected, remedy = edges[0].placed, f"a free {word}", "connect it to other nodes"
     what = f"the {word} of '{placed.element}' is forced to be zero{place}"
-    if placed.bank and not coupled and _port(edges[0]).imposes is ACROSS:
+    if placed.bank and not coupled and edges[0].port.imposes is ACROSS:
         what = f"the lanes of '{placed.element}' fix each other's {word}{place}"
-        remedy = _separation([_port(edges[0])], mixed=False).partition(", or ")[2]
+        remedy = _separation([edges[0].port], mixed=False).partition(", or ")[2]
         if slips := _slipping(laws, edges):
             expected, remedy = _behind_inductor(slips)
         remedy += ", in each lane"
@@ -114,14 +114,13 @@ def _alone(laws: Laws, edges: list[Edge], word: str, place: str, coupled: bool) 
 def _slipping(laws: Laws, edges: list[Edge]) -> list[Edge]:
     """Return the capacitors among branches that slip, as stops do: no resistor sets them free."""
     slips = {port.state for _, port in laws.circuit.of(DissipativePort) if port.rate}
-    given = [(edge, _port(edge)) for edge in edges]
-    stores = [(edge, port) for edge, port in given if isinstance(port, Storage)]
+    stores = [(edge, edge.port) for edge in edges if isinstance(edge.port, Storage)]
     return [edge for edge, port in stores if port.state in slips and port.imposes is ACROSS]
 
 
 def _behind_inductor(slips: list[Edge]) -> tuple[str, str]:
     """Return the expectation and the remedy for capacitors that slip."""
-    domain = _port(slips[0]).domain
+    domain = slips[0].port.domain
     inductor = with_article(kind_of("store", domain, THROUGH).name)
     names = _quoted([edge.placed.element for edge in slips])
     free = f"a {domain.through.name} of {names} that is a state's, or an input"
@@ -140,10 +139,9 @@ def _loose_end(laws: Laws, edges: list[Edge]) -> str:
 
 def _massless(laws: Laws, edges: list[Edge]) -> tuple[str, str]:
     """Return the first node whose forces or torques are all given, and the kind that it lacks."""
-    given = [(edge, _port(edge)) for edge in laws.edges]
-    moved = {n for e, port in given if port.imposes is ACROSS for n in e.branch}
+    moved = {n for e in laws.edges if e.port.imposes is ACROSS for n in e.branch}
     for edge in edges:
-        port = _port(edge)
+        port = edge.port
         bare = [n for n in edge.branch if n not in moved and not is_reference(n)]
         if port.domain.mechanical and port.imposes is THROUGH and bare:
             return bare[0], kind_of("store", port.domain, ACROSS).name
@@ -152,14 +150,6 @@ def _massless(laws: Laws, edges: list[Edge]) -> tuple[str, str]:
 
 def _quoted(names: list[str]) -> str:
     return ", ".join(f"'{name}'" for name in names)
-
-
-def _port(edge: Edge) -> Imposing:
-    match edge.placed.port:
-        case Storage() | DissipativePort() | Source() | Body() as port:
-            return port
-    msg = f"{edge.placed.element} has no branch of its own"
-    raise TypeError(msg)
 
 
 def _separation(ports: list[Imposing], mixed: bool) -> str:
@@ -198,17 +188,16 @@ def _kinds(role: str, domains: Iterable[PhysicalDomain], *imposes: PowerVariable
 
 def _unturnable(laws: Laws, edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
     """Return the resistors among branches whose laws cannot be turned round."""
-    found = [(edge.placed.element, edge.placed.port) for edge in edges]
-    resistors = [(name, port) for name, port in found if isinstance(port, DissipativePort)]
+    resistors = [(e.placed.element, e.port) for e in edges if isinstance(e.port, DissipativePort)]
     taken = laws.circuit.names
     return [(name, port) for name, port in resistors if turn(port, taken) is None]
 
 
 def _inverse_law(element: str, port: DissipativePort) -> tuple[str, str]:
     """Return the expectation and the remedy for a law that imposes what is imposed already."""
-    field, letter = inverse_field(port)
-    expected = f"the law of '{element}' as a function of {letter}, which is given"
-    remedy = f"give the inverse law, {field} = '...' of {letter}"
+    given, asked = map(port.domain.variable, (port.imposes, port.imposes.other))
+    expected = f"the law of '{element}' as a function of {given.letter}, which is given"
+    remedy = f"give the inverse law, {asked.name} = '...' of {given.letter}"
     return expected, f"{remedy} (only laws c*{port.letter} are turned round)"
 
 

@@ -36,7 +36,7 @@ conduction leaves the second body
   + (self.rows[port.second], n): sp.S.One
   = two airs
 heat comes to another body
-  - (self.rows[placed.port.body], n): sp.S.One
+  - (self.rows[port.body], n): sp.S.One
   + (min(self.rows[e] for e in ("body", "hot") if e in self.rows), n): sp.S.One
   = two airs
 resistors in a loop push the other way
@@ -68,16 +68,16 @@ shares are left out of what drives processes
   + B, D = loops.columns(B), D
   = driven coil loop
 no heat is exchanged
-  - if isinstance(placed.port, Exchange | HeatInput)
+  - if isinstance(port, Exchange | HeatInput)
   + if False
   = two airs
 states are coupled the other way
-  - J0, N = self._block("E", "E"), self._output("u")
-  + J0, N = self._block("E", "E").T, self._output("u")
+  - J0, N = self._block("E", "E"), self._block("u", "u")
+  + J0, N = self._block("E", "E").T, self._block("u", "u")
   = springs_in_a_loop
 states are not coupled
-  - J0, N = self._block("E", "E"), self._output("u")
-  + J0, N = self._block("E", "E") - self._block("E", "E"), self._output("u")
+  - J0, N = self._block("E", "E"), self._block("u", "u")
+  + J0, N = self._block("E", "E") - self._block("E", "E"), self._block("u", "u")
   = springs_in_a_loop
 ## network/inverse
 a law turned round multiplies by its slope
@@ -158,9 +158,9 @@ an exchange is of the inverse temperatures
   = two airs
 an exchange has another body's temperature
   - temperature = symbols[circuit.body(port.body).temperature]
-  -             ratio
+  -     ratio
   + temperature = symbols[next(iter(circuit.of(Body)))[1].temperature]
-  +             ratio
+  +     ratio
   = two airs
 laws are of minus their letter
   - symbols.law(port.law, letters)
@@ -207,9 +207,9 @@ outputs are merged
   = two_sources_on_one_input
 inputs are merged
   - return symbols[port.input]
-  -         case Exchange
+  -     temperature
   + return symbols[next(iter(circuit.model.inputs))]
-  +         case Exchange
+  +     temperature
   = piezo
 ## iphs/system
 a process is not over its temperature
