@@ -15,15 +15,7 @@ from functools import cached_property
 from typing import final
 
 from piezo_sym.translation.change import moved
-from piezo_sym.translation.expressions import (
-    PLAIN,
-    TEST,
-    WHOLE,
-    Expressions,
-    Read,
-    Shape,
-    refused,
-)
+from piezo_sym.translation.expressions import PLAIN, TEST, WHOLE, Expressions, Read, Shape, refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Proved
 from piezo_sym.translation.signs import compare, on_path
@@ -131,9 +123,7 @@ class Scope:
     def read(self) -> Expressions:
         """The reader of expressions in which these names stand."""
         known = self.file.known
-        return Expressions(
-            known.field, known.numbers, known.real, self._leaf, self.file.calls, True
-        )
+        return Expressions(known.field, known.numbers, self._leaf, self.file.calls, True)
 
     @property
     def banks(self) -> tuple[str, ...]:

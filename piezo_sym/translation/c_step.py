@@ -50,12 +50,7 @@ _RESULTS |= {"slopes out": NOT_COMPARED, "bends out": NOT_COMPARED}
 
 
 def read_step(text: str, known: Proved) -> dict[Key, Value]:
-    """Return every row that the integrands and the stage of a printed step write.
-
-    Parameters
-    ----------
-    known : from `proved_step`.
-    """
+    """Return every row that the functions of a printed step write; `known` is of `proved_step`."""
     macros, calls = macros_of(text)
     module = python_of(text, known.iphs.model.name, macros, [*fixed_parts(text, known)])
     calls = {"chosen": "choice", **calls}

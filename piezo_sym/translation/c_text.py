@@ -46,12 +46,8 @@ _FUNCTION = re.compile(rf"{_TYPE}(\w+) \( ([^()]+) \)")
 def python_of(text: str, model: str, macros: str = "", known: Sequence[str] = ()) -> ast.Module:
     """Return a C file as Python.
 
-    Parameters
-    ----------
-    text : the file.
-    model : its name, which its header has.
-    macros : what stands behind the headers.
-    known : parts of the text that are as expected, and left out.
+    Its header has the name of the `model`; `macros` stand behind the headers; `known` are parts of
+    the text that are as expected, and left out.
     """
     head = re.match(_HEAD.replace("{model}", re.escape(model)), text)
     begins = head is not None and text.startswith(macros, head.end())

@@ -130,9 +130,8 @@ def _chain(value: Value, state: int, own: Value, of_sum: Inner) -> Value:
     for mono, c in value.terms.items():
         for n, (g, e) in enumerate(mono):
             if gens[g].terms:
-                rest = (
-                    (*mono[:n], (g, e - 1), *mono[n + 1 :]) if e != 1 else mono[:n] + mono[n + 1 :]
-                )
+                left = ((g, e - 1),) if e != 1 else ()
+                rest = (*mono[:n], *left, *mono[n + 1 :])
                 parts.append(Value(field, {rest: c * e}) * gens[g])
     return field.total(parts)
 
@@ -158,5 +157,5 @@ def _of_rule(rule: str, words: Mapping[str, Value]) -> Value:
     def leaf(node: ast.expr) -> Read:
         return words[ast.unparse(node)], PLAIN
 
-    read = Expressions(words["x"].field, {}, lambda value: value, leaf, _CALLS, False)
+    read = Expressions(words["x"].field, {}, leaf, _CALLS, False)
     return read.numeric(ast.parse(rule, mode="eval").body)[0]

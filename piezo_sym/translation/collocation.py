@@ -162,7 +162,7 @@ def _ledger(read: SystemReader, listed: dict[str, list[Value]]) -> Iterator[tupl
         ):
             yield Slot(f"{words} {slot.label}", slot.bank), value
     shares, inputs = system.G.T @ system.dS, system.u
-    for n, placed in enumerate(port_order(read.iphs.circuit)):
-        if isinstance(placed.port, Exchange | HeatInput):
+    for n, (placed, port) in enumerate(port_order(read.iphs.circuit)):
+        if isinstance(port, Exchange | HeatInput):
             brought = read(shares[n, 0]) * read(inputs[n, 0])
             yield Slot(f"entropy brought by {placed.element}"), brought

@@ -67,9 +67,7 @@ class Expressions:
     """Reads expressions."""
 
     field: GeneratorField  # of the values
-    #: numbers, real: see `Proved`.
-    numbers: Mapping[float, Fraction]
-    real: Callable[[Value], Value]
+    numbers: Mapping[float, Fraction]  # see `Proved`
     #: Reads what the language or its names give a meaning: names, subscripts, other calls.
     leaf: Leaf
     functions: Mapping[str, str]  # the name of each function in the text, and what it is
@@ -120,11 +118,9 @@ class Expressions:
 
     def _real(self, read: Read) -> Read:
         value, shape = read
-        return (
-            (self.real(value), PLAIN)
-            if shape == WHOLE
-            else (value, replace(shape, integers=False) if shape.integers else shape)
-        )
+        if shape == WHOLE:
+            return value, PLAIN
+        return value, replace(shape, integers=False) if shape.integers else shape
 
     def whole(self, node: ast.expr) -> Value:
         """Return an integer: an index or a size."""

@@ -9,13 +9,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import accumulate, pairwise
+from itertools import accumulate
 from math import prod
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.iphs import IPHS
-from piezo_sym.translation.change import put
 from piezo_sym.translation.field import GeneratorField, Need, NotShownError, Value
 from piezo_sym.translation.system_reader import rounded
 
@@ -79,33 +78,14 @@ class Proved:
         return found
 
     @cached_property
-    def ends(self) -> dict[int, Value]:
-        """The letters that places are written in: for each bank, how many lanes end with it.
-
-        A place is then a letter and a number, however many banks stand before it.
-        """
-        found, total = {}, self.field.zero
-        for bank in self.iphs.symbols.counts:
-            total = total + self.field.count(bank)
-            (letter,) = self.field.name(f"end of {bank}").generators()
-            found[letter] = total
-        return found
-
-    @cached_property
     def sizes(self) -> dict[str, Value]:
-        """The size of each bank, in the letters of places."""
-        ends = [self.field.zero, *(self.field.raised(letter, 1) for letter in self.ends)]
-        banks = zip(self.iphs.symbols.counts, pairwise(ends), strict=True)
-        return {bank: last - first for bank, (first, last) in banks}
+        """The size of each bank."""
+        return {bank: self.field.count(bank) for bank in self.iphs.symbols.counts}
 
     @cached_property
     def bank_of_size(self) -> dict[Value, str]:
         """The bank of each size."""
         return {size: bank for bank, size in self.sizes.items()}
-
-    def real(self, size: Value) -> Value:
-        """Return an integer made of sizes as a real number."""
-        return put(size, self.ends)
 
     def parameter(self, name: str) -> tuple[Value, bool]:
         """Return a parameter that lanes share, or the size of a bank; and whether it is a size."""
@@ -142,7 +122,7 @@ class Rows:
         self.layout = known.layouts.get(name, Layout((), (known.field.zero,)))
         self.found: dict[Key, Value] = {}
         self.zeros = False
-        self._ends = {letter: n * LONG for n, letter in enumerate(known.ends, 1)}
+        self._counts = {g for size in known.sizes.values() for g in size.generators()}
         self._starts = {self._if_long(at): n for n, at in enumerate(self.layout.places[:-1])}
 
     @property
@@ -192,5 +172,5 @@ class Rows:
         """Return a place of the first lanes where every bank has `LONG` lanes."""
         total = Fraction(0)
         for mono, c in place.terms.items():
-            total += Fraction(c) * prod(self._ends.get(g, 0) ** int(e) for g, e in mono)
+            total += Fraction(c) * prod((LONG * (g in self._counts)) ** int(e) for g, e in mono)
         return int(total)

@@ -69,7 +69,7 @@ class _Function:
         self.written = Rows(known, self.name)
         self.own: tuple[str, str] | None = None  # in a list, which lane a part is of, and its bank
         self.field.derived = self.name == "jacobian"
-        self.read = Expressions(self.field, known.numbers, known.real, self._leaf, CALLS, False)
+        self.read = Expressions(self.field, known.numbers, self._leaf, CALLS, False)
 
     def rows(self) -> dict[Key, Value]:
         """Return the rows that the function writes."""

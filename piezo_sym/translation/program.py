@@ -33,11 +33,6 @@ MOST_TEXT = 4_000_000
 READ = {".py": "NumPy", ".c": "C", "_step.c": "step"}
 #: So many rows that are not shown to be right are looked at for numbers at which they are wrong.
 MOST_TRIED = 4
-_ENOUGH = {
-    "nonzero": ({"nonzero"}, {"positive"}),
-    "nonnegative": ({"nonnegative"}, {"positive"}),
-    "positive": ({"positive"},),
-}
 
 
 @final
@@ -59,13 +54,9 @@ class Reference:
 
 
 def program_row(iphs: IPHS, texts: Mapping[str, str], endings: Collection[str] = READ) -> Row:
-    """Return the row `program` of a system and its printed modules.
+    """Return the row `program` of a system and its texts, from `printed`, with some endings.
 
-    Parameters
-    ----------
-    iphs : from `derive`.
-    texts : from `printed`.
-    endings : of the texts that are read; rows on some of them are joined by `worst`.
+    Rows on some of them are joined by `worst`.
     """
     try:
         known = Reference(iphs)
@@ -156,25 +147,28 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
             allowed.setdefault(factor, []).append(given)  # of a product that is not zero
     for need in needs:
         value = _in_first_lane(need.value)
+        nonzero = [  # wherever printed code needs the value
+            g.value
+            for g in known.needs
+            if g.kind in {"nonzero", "positive"} and g.path == field.one and _covers(g, need)
+        ]
         op = {"nonzero": "==", "nonnegative": "<"}.get(need.kind, "<=")
         with reading(field, need.outside):
             fails = compare(op, value, field.zero)
             left = _in_first_lane(need.path) * fails
             for given in allowed.get(value, ()):
-                if {given.kind} in _ENOUGH[need.kind] and _covers(given, need):
+                if given.kind in (need.kind, "positive") and _covers(given, need):
                     left = left * (field.one - given.path)
-            met = is_zero(left) or _is_square(value, known, need)
-        if not met and not _is_square_sum(value, known.needs, need):
+            # a derivative's divisor is the square of what laws divide by
+            met = is_zero(left) or any(is_zero(value - d * d) for d in nonzero)
+        if not met and not _is_square_sum(value, nonzero):
             where = "jacobian" if need.derived else "code"
             yield f"{where} needs a value to be {need.kind} that is not shown to be so"
 
 
-def _is_square_sum(value: Value, given: tuple[Need, ...], need: Need) -> bool:
-    """Return whether a value is positive: squares of names, one of which laws divide by."""
-    field, kinds = value.field, {"nonzero", "positive"}
-    nonzero = {
-        g.value for g in given if g.kind in kinds and g.path == field.one and _covers(g, need)
-    }
+def _is_square_sum(value: Value, nonzero: Collection[Value]) -> bool:
+    """Return whether a value is positive: squares of names, one of which is not zero."""
+    field = value.field
     squares = all(
         c > 0 and all(field.gens[g].kind == "name" and e > 0 and e % 2 == 0 for g, e in mono)
         for mono, c in value.terms.items()
@@ -182,13 +176,6 @@ def _is_square_sum(value: Value, given: tuple[Need, ...], need: Need) -> bool:
     return squares and any(
         all(field.raised(g, 1) in nonzero for g, _ in mono) for mono in value.terms
     )
-
-
-def _is_square(value: Value, known: Proved, need: Need) -> bool:
-    """Return whether a value is the square of what laws divide by, as a derivative's divisor is."""
-    one, kinds = known.field.one, {"nonzero", "positive"}
-    divisors = (g for g in known.needs if g.kind in kinds and g.path == one and _covers(g, need))
-    return any(is_zero(value - g.value * g.value) for g in divisors)
 
 
 def _covers(given: Need, need: Need) -> bool:

@@ -51,12 +51,7 @@ def _slots(iphs: IPHS) -> dict[str, tuple[Slot, ...]]:
 def of_system(
     read: SystemReader, instead: Mapping[sp.Expr, sp.Expr] = MappingProxyType({})
 ) -> dict[str, list[Value]]:
-    """Return the rows of rates, outputs, supplied power, heats and entropy production.
-
-    Parameters
-    ----------
-    instead : what stands for some products.
-    """
+    """Return the rows of rates, outputs, supply, heats, production, `instead` of some products."""
     system = read.iphs.system
     found: dict[str, Iterable[sp.Expr]] = {
         "rhs": system.rhs,

@@ -11,7 +11,7 @@ from fractions import Fraction
 from itertools import product
 
 from piezo_sym.translation.change import put
-from piezo_sym.translation.field import GeneratorField, NotShownError, Value
+from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.functions import by_cosh, power
 from piezo_sym.translation.numerator import divisors, vanishes, vanishes_with
 from piezo_sym.translation.possible import impossible
@@ -94,26 +94,22 @@ def _apart(value: Value) -> list[Value]:
 
     Sums over one bank whose factors in its lane are equal are joined, and these factors left out.
     """
-    field, rest = value.field, []
+    field, gens, rest = value.field, value.field.gens, []
     sums: dict[tuple[str, Value], list[Value]] = {}
     for mono, c in value.terms.items():
-        found = next((n for n, (g, e) in enumerate(mono) if _is_sum(field, g) and e == 1), None)
+        found = next((n for n, (g, e) in enumerate(mono) if gens[g].kind == "sum" and e == 1), None)
         if found is None:
             rest.append(Value(field, {mono: c}))
             continue
-        gen = field.gens[mono[found][0]]
+        gen = gens[mono[found][0]]
         other = mono[:found] + mono[found + 1 :]
-        own = tuple(p for p in other if (gen.mark, 0) in field.gens[p[0]].lanes)
+        own = tuple(p for p in other if (gen.mark, 0) in gens[p[0]].lanes)
         free = Value(field, {tuple(p for p in other if p not in own): c})
         assert gen.arg is not None
         sums.setdefault((str(gen.mark), Value(field, {own: 1})), []).append(free * gen.arg)
     if not sums:
         return [value]
     return [field.total(rest), *map(field.total, sums.values())]
-
-
-def _is_sum(field: GeneratorField, g: int) -> bool:
-    return field.gens[g].kind == "sum"
 
 
 def _groups(value: Value) -> list[tuple[Value, ...]]:
@@ -255,9 +251,8 @@ def _solved(d: Value) -> dict[int, Value]:
         factor = Value(field, {tuple(p for p in m if p[0] != g): c for m, c in own.items()})
         if g in factor.parts | rest.parts or (powers != {1} and (rest.terms or min(powers) < 0)):
             continue
-        if not has_sign(factor):
-            continue
-        return {g: -(rest * _inverse(factor))}
+        if has_sign(factor):
+            return {g: -(rest * _inverse(factor))}
     return {}
 
 

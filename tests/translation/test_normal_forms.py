@@ -47,7 +47,7 @@ def reader():
     names = {name: field.name(name, sign=sign) for name, sign in NAMES.items()}
     calls = {name: name for name in (*CALLS, *TWO)} | {"where": "choice"}
     leaf = lambda node: (names[node.id], PLAIN)  # noqa: E731
-    return field, Expressions(field, {}, lambda value: value, leaf, calls, False)
+    return field, Expressions(field, {}, leaf, calls, False)
 
 
 def number(node, at):
