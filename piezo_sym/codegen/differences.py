@@ -16,10 +16,7 @@ from piezo_sym.expressions.tree import ONE, Add, Call, Div, Expr, Mul, Neg, Num,
 def with_excess(law: Expr, excesses: Mapping[tuple[Sym, Sym], Quantity]) -> Expr:
     """Return a law with differences such as ``T - T_0`` replaced by their names.
 
-    Parameters
-    ----------
-    law : any expression.
-    excesses : the quantity that is the difference of a temperature and a constant.
+    `excesses` has the quantity that is the difference of a temperature and a constant.
     """
     inner = rebuild(law, lambda part: with_excess(part, excesses))
     if not isinstance(inner, Add):

@@ -205,9 +205,8 @@ class _Chain:
     def _of_sum(self, slope: _Slope, bank: str) -> _Slope:
         """Return the derivative of a sum over the lanes of `bank`, given that of its terms."""
         if not self.state.bank:
-            return _Slope(self._total(slope.value, bank))
-        across = [mul(self._total(o.left, bank), o.right) for o in slope.outer]
+            return _Slope(self.derivatives.total(slope.value, bank, self.word))
+        across = [
+            mul(self.derivatives.total(o.left, bank, self.word), o.right) for o in slope.outer
+        ]
         return _Slope(add(slope.value, *across))
-
-    def _total(self, term: Expr, bank: str) -> Expr:
-        return ZERO if term == ZERO else self.derivatives.total(term, bank, self.word)

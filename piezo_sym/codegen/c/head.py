@@ -162,9 +162,9 @@ def _declarations(program: Program) -> Iterator[str]:
         yield "\n".join(["/*", *(f" * {line}".rstrip() for line in lines), " */", f"{head};"])
 
 
-def wrapped(text: str, first: str = "") -> list[str]:
+def wrapped(text: str) -> list[str]:
     """Return the lines of a text in a comment."""
-    return wrap(text_of(text), WIDTH - 4, initial_indent=first, subsequent_indent="    ")
+    return wrap(text_of(text), WIDTH - 4, subsequent_indent="    ")
 
 
 def _argument_lines(

@@ -34,9 +34,7 @@ def in_parts(
 ) -> tuple[list[list[Write]], Sequence[Write]]:
     """Return the writes of each part of a function, and the others: those with loops over lanes.
 
-    Parameters
-    ----------
-    fields : those of each array of states, means or branches.
+    `fields` are those of each array of states, means or branches.
     """
     if len(quantities) + len(writes) < LARGE:
         return [], writes
