@@ -11,7 +11,9 @@ import resource
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from functools import lru_cache
+from typing import Any
 
 import sympy as sp
 
@@ -34,23 +36,12 @@ def integral(law: Expr, name: str, positive: frozenset[str]) -> Expr | None:
     """Return an integral of a smooth law for `positive` names > 0; None if none is found."""
     request = json.dumps([spell(law), name, sorted(positive)])
     command = (sys.executable, "-P", "-m", "piezo_sym.algebra.integrals")
+    how: dict[str, Any] = {"capture_output": True, "text": True, "timeout": WITH_START}
     environment = {**os.environ, "PYTHONPATH": search_path()}
-    try:
-        done = subprocess.run(
-            command,
-            input=request,
-            capture_output=True,
-            text=True,
-            timeout=WITH_START,
-            check=False,
-            env=environment,
-        )
-        return parse_law(done.stdout.strip(), "an integral") if done.returncode == 0 else None
-    except (
-        subprocess.TimeoutExpired,
-        PiezoError,
-    ):  # the latter: it needs a function that laws lack
-        return None
+    with suppress(subprocess.SubprocessError, PiezoError):  # it took too long; laws lack a function
+        done = subprocess.run(command, input=request, check=True, env=environment, **how)
+        return parse_law(done.stdout.strip(), "an integral")
+    return None
 
 
 def vanishes(expr: sp.Expr) -> bool:

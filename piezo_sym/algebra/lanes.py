@@ -106,12 +106,8 @@ class LaneMatrix:
     def __getitem__(self, place: tuple[int | str, int | str] | int | str) -> sp.Expr:
         """Return an entry by labels (``J0["p", "Q_C"]``) or indices; a vector needs the row alone.
 
-        Within one bank, what counts for equal lanes only has the factor delta_jk.
-
-        Raises
-        ------
-        UsageError
-            If there is no such row or column.
+        Within one bank, what counts for equal lanes only has the factor delta_jk.  Raises
+        `UsageError` if there is no such row or column.
         """
         row, col = place if isinstance(place, tuple) else (place, 0)
         rows, cols = ([slot.label for slot in slots] for slots in (self.rows, self.cols))
@@ -228,20 +224,8 @@ def _added(left: Entries, right: Entries) -> dict[tuple[int, int], sp.Expr]:
 
 def _totals(terms: Mapping[tuple[int, int], list[sp.Expr]]) -> dict[tuple[int, int], sp.Expr]:
     """Return the sum at each place, expanded once; zeros drop out."""
-    totals = {place: _expanded(sp.Add(*parts)) for place, parts in terms.items()}
+    totals = {place: sp.expand(sp.Add(*parts)) for place, parts in terms.items()}
     return {place: total for place, total in totals.items() if total != 0}
-
-
-def _expanded(expr: sp.Expr) -> sp.Expr:
-    """Return an expression expanded; SymPy takes long to see that products of symbols are."""
-    factors = (factor for term in sp.Add.make_args(expr) for factor in sp.Mul.make_args(term))
-    return expr if all(map(_is_plain, factors)) else sp.expand(expr)
-
-
-def _is_plain(factor: sp.Expr) -> bool:
-    """Return whether a factor is a number or a symbol, or a whole power of a symbol."""
-    base, exponent = factor.as_base_exp() if factor.is_Pow else (factor, sp.S.One)
-    return bool(base.is_Atom and exponent.is_Integer)
 
 
 def _product(

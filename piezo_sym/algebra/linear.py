@@ -62,14 +62,8 @@ def solve(
     """Return each unknown as a combination of givens.
 
     Numbers are preferred as pivots.  A pivot with symbols is added to `divisors`: a proof must show
-    that it is not zero.
-
-    Raises
-    ------
-    SingularError
-        If the equations do not fix every unknown, or contradict each other.
-    LongError
-        If more than `most` coefficients would be combined on the way.
+    that it is not zero.  Raises `SingularError` if the equations do not fix every unknown, or
+    contradict each other; `LongError` if more than `most` coefficients would be combined.
     """
     rows = [Equation(dict(row.left), dict(row.right)) for row in equations]
     users = _users(rows)

@@ -182,24 +182,14 @@ def derivative(node: Expr, name: str) -> Expr:
         case Call() if knots(node):
             return derivative(choices(node), name)
         case Call(function, args):
-            slopes = _slopes(function, args)
-            inner = [derivative(arg, name) for arg in args]
-            return add(*(mul(s, d) for s, d in zip(slopes, inner, strict=True)))
+            slopes = (rule(text, args[0], args[-1], node) for text in RECORDS[function].slopes)
+            return add(*(mul(s, derivative(x, name)) for s, x in zip(slopes, args, strict=True)))
         case If(then, condition, other):
-            return _choice(derivative(then, name), condition, derivative(other, name))
+            one, two = derivative(then, name), derivative(other, name)
+            return one if one == two else If(one, condition, two)
         case LaneSum(arg, bank):
             return LaneSum(derivative(arg, name), bank)
     return ZERO
-
-
-def _choice(then: Expr, condition: Cmp, other: Expr) -> Expr:
-    return then if then == other else If(then, condition, other)
-
-
-def _slopes(function: str, args: tuple[Expr, ...]) -> tuple[Expr, ...]:
-    """Return the derivative of a function with respect to each of its arguments."""
-    value = Call(function, args)
-    return tuple(rule(text, args[0], args[-1], value) for text in RECORDS[function].slopes)
 
 
 def rule(text: str, x: Expr, w: Expr = ZERO, value: Expr = ZERO) -> Expr:

@@ -67,15 +67,10 @@ def evaluate(node: Expr, values: Mapping[str, float]) -> float:
 
 
 def evaluated(node: Expr, values: Mapping[Any, Value], bits: int = BITS) -> Value:
-    """Return the value of a law as a number of FLINT's.
+    """Return the value of a law as a number of FLINT's, from those of names and sums over lanes.
 
     Raises `ArithmeticError` or `ValueError` where the law has no value (1/0, log(0)). Raises
-    `TooCloseError` if the precision does not decide that, or a comparison.
-
-    Parameters
-    ----------
-    values : of names, and of sums over lanes.
-    bits : precision of balls.
+    `TooCloseError` if the precision of balls does not decide that, or a comparison.
     """
     with ctx.workprec(bits):
         value = _value(node, values)

@@ -73,7 +73,8 @@ def check_tokens(text: str) -> None:
             raise RefusedError(what, LANGUAGE, _remedy(text[position : position + 2]))
         token = match.group()
         depth += (token == "(") - (token == ")")
-        prefixes = _prefixes(prefixes, match)
+        if match.lastgroup != "space":  # operators in a row
+            prefixes = prefixes + 1 if token in {"+", "-", "*", "/", "**"} else 0
         if depth > MAX_DEPTH or prefixes > MAX_PREFIXES:
             raise RefusedError("is nested too deeply", f"at most {MAX_DEPTH} levels")
         if match.lastgroup == "number":
@@ -86,13 +87,6 @@ def _remedy(odd: str) -> str:
     if odd in DOTTED:
         return f"write {DOTTED[odd]} for {odd}"
     return REMEDIES.get(odd[0], "")
-
-
-def _prefixes(count: int, match: re.Match[str]) -> int:
-    """Return the number of operators in a row after one more token, spaces aside."""
-    if match.lastgroup == "space":
-        return count
-    return count + 1 if match.group() in {"+", "-", "*", "/", "**"} else 0
 
 
 def _check_number(token: str, following: str) -> None:

@@ -112,20 +112,15 @@ def _degree(node: Expr, name: str) -> tuple[Fraction, tuple[Expr, ...]]:
 def _power_rule(node: Expr, name: str) -> Expr:
     base, exponent = (node.base, node.exponent) if isinstance(node, Pow) else (node, Fraction(1))
     slope = slope_of(base, name)
-    if slope is None or exponent == -1:
-        return _polynomial_rule(node, name)
+    if slope is None or exponent == -1:  # a polynomial that is no sum of powers
+        terms = _polynomial(node, name)
+        found = {n: mul(terms[n], power(Sym(name), Fraction(n + 1))) for n in sorted(terms)}
+        return add(*(_quotient(term, n + 1) for n, term in found.items()))
     raised = power(base, exponent + 1)
     match slope:
         case Div(Num(value), bottom):
             return Div(mul(bottom, raised), Num((exponent + 1) * value))
     return Div(raised, mul(Num(exponent + 1), slope))
-
-
-def _polynomial_rule(node: Expr, name: str) -> Expr:
-    """Return the integral of a polynomial that is not written as a sum of powers."""
-    terms = _polynomial(node, name)
-    raised = {n: mul(terms[n], power(Sym(name), Fraction(n + 1))) for n in sorted(terms)}
-    return add(*(_quotient(term, n + 1) for n, term in raised.items()))
 
 
 def _quotient(term: Expr, number: int) -> Expr:
@@ -204,7 +199,7 @@ def divided(top: Expr, slope: Expr) -> Expr:
 
 def slope_of(node: Expr, name: str) -> Expr | None:
     """Return a != 0 if node = a*x + b with a, b free of x, else None."""
-    if not _smooth(node):
+    if any(isinstance(part, If | Call) for part in walk(node)):
         return None
     slope = derivative(node, name)
     return slope if slope != ZERO and name not in names(slope) else None
@@ -213,7 +208,3 @@ def slope_of(node: Expr, name: str) -> Expr | None:
 def _divides_well(slope: Expr | None) -> bool:
     """Return whether a quotient by this slope has no name in its denominator."""
     return isinstance(slope, Num) or (isinstance(slope, Div) and isinstance(slope.left, Num))
-
-
-def _smooth(node: Expr) -> bool:
-    return not any(isinstance(part, If | Call) for part in walk(node))

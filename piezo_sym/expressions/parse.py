@@ -18,15 +18,9 @@ Tree = TypeVar("Tree", Expr, Cmp)
 
 
 def parse_law(text: str, where: str) -> Expr:
-    """Return the tree of a law.
+    """Return the tree of a law; `where` is its place in the spec, for the message.
 
-    Raises `SpecError` if the text is not of the law language, or a constant part of it has no
-    value.
-
-    Parameters
-    ----------
-    text : the law, as written in the spec.
-    where : its place in the spec, for the message.
+    Raises `SpecError` if the text is not of the law language, or a constant part has no value.
     """
     return _located(_law, text, where)
 

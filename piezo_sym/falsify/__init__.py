@@ -26,24 +26,11 @@ __all__ = ["POINTS", "Attack", "Hunt", "falsify", "module_from"]
 def falsify(
     iphs: IPHS, module: ModuleType, claims: Iterable[tuple[str, str]], *, points: int = POINTS
 ) -> tuple[Attack, ...]:
-    """Attack rows that are about to be called PROVED.
+    """Return the attack on each of some rows that can be evaluated at a point, in their order.
 
-    Parameters
-    ----------
-    iphs : the system.
-    module : its NumPy module, from `module_from` and the text about to be written.
-    claims : (id, element) of the rows.
-    points : number of points inside the domain; fewer in tests of many small networks.
-
-    Returns
-    -------
-    tuple of Attack
-        In the order of `claims`, one for each row that can be evaluated at a point.
-
-    Raises
-    ------
-    ContradictionError
-        If a row is false at a point, confirmed by exact arithmetic.
+    `module` is the system's NumPy module, from `module_from`; `claims` are the (id, element) of the
+    rows; `points` is the number of points inside the domain.  Raises `ContradictionError` if a row
+    is false at a point, confirmed by exact arithmetic.
     """
     hunt = Hunt(iphs, module, rows := tuple(claims), points)
     hunt.search()

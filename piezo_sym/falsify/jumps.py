@@ -94,8 +94,11 @@ def _confirmed(
     def there(value: Fraction) -> Point:
         return Point(exact, space, [*point[:column], value, *point[column + 1 :]])
 
+    # laws of others may jump on purpose at the same place
+    laws = [space.probe.laws[what, claim.element] for what in space.probe.kinds[claim.element]]
+
     def values_at(value: Fraction) -> Values:
-        return _watched(claim, there(value))
+        return there(value).values(laws)
 
     for wider in WIDER:
         off = wider * max(abs(near), abs(far)) * (1 if far > near else -1)
@@ -134,12 +137,6 @@ def _narrowed(
                 low, one, gap = middle, value, right
         gaps.append(gap)
     return (gaps[1], (low, high)) if gaps[1] > SAME * gaps[0] else None
-
-
-def _watched(claim: Claim, at: Point) -> list[Any]:
-    """Return the values of a claim's laws: laws of others may jump on purpose at the same place."""
-    laws = at.probe.laws
-    return at.values([laws[what, claim.element] for what in at.probe.kinds[claim.element]])
 
 
 def _gap(one: Values, other: Values) -> Any:
