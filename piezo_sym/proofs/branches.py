@@ -111,8 +111,7 @@ def _indicator(conditions: tuple[Cmp, ...]) -> Expr:
 def parts(branch: Branch) -> tuple[Expr, ...]:
     """Return the smooth laws of a branch of ``together``, which takes several laws."""
     if not isinstance(branch.value, Call):
-        msg = "a branch of one law has no parts"
-        raise TypeError(msg)
+        raise TypeError("a branch of one law has no parts")
     return branch.value.args
 
 

@@ -10,15 +10,7 @@ from dataclasses import replace
 from piezo_sym.errors import quote
 from piezo_sym.expressions.exact_eval import Value, all_hold, value_of
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import (
-    ONE,
-    ZERO,
-    Cmp,
-    Expr,
-    Pow,
-    names,
-    replaced,
-)
+from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Pow, names, replaced
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.domain import spec_points
 from piezo_sym.proofs.obligations import NEVER, Question
@@ -60,7 +52,9 @@ def domain_conditions(
         return not any(fails(replace(q, where=(*more, *q.where))) for q in questions)
 
     found = _conditions(broken, iphs, questions[0], fails)
-    if not all(map(names, found)) or _no_point_satisfies(found, questions[0], fails):
+    where = (*found, *questions[0].where)
+    never = Question("", questions[0].order, where, NEVER, NEVER)  # follows if no point is there
+    if not all(map(names, found)) or not fails(never):
         return _falling(failed, points)
     said = turning(found, iphs)
     if said or not mended(found):
@@ -72,14 +66,6 @@ def domain_conditions(
             del found[claim]
     broken = [claim for claim in found if not _satisfied(claim, points)]
     return in_words([*found.values()], broken, iphs)
-
-
-def _no_point_satisfies(
-    conditions: Iterable[Cmp], question: Question, fails: Callable[[Question], bool]
-) -> bool:
-    """Return whether conditions contradict the domain of a question: then `NEVER` follows."""
-    where = (*conditions, *question.where)
-    return not fails(Question("", question.order, where, NEVER, NEVER))
 
 
 def turning(conditions: Iterable[Cmp], iphs: IPHS) -> str:
@@ -106,18 +92,17 @@ def _conditions(
     points, bodies = spec_points(iphs), [port for _, port in iphs.circuit.of(Body)]
     found = dict[Cmp, str]()
 
-    def positive(part: Expr) -> bool:
-        claim = Cmp(">", part, ZERO)
-        return not fails(Question("", question.order, (*found, *question.where), claim, claim))
-
-    def enough(condition: Cmp, claim: Cmp) -> bool:
-        where = (condition, *found, *question.where)
+    def follows(claim: Cmp, *more: Cmp) -> bool:
+        where = (*more, *found, *question.where)
         return not fails(Question("", question.order, where, claim, claim))
+
+    def positive(part: Expr) -> bool:
+        return follows(Cmp(">", part, ZERO))
 
     for claim in sorted(broken, key=lambda claim: len(names(claim))):
         bare = without_factors(claim, positive)
         short = _at_root(shortened(bare, positive))
-        bare = short if short == bare or enough(short, claim) else _at_root(bare)
+        bare = short if short == bare or follows(claim, short) else _at_root(bare)
         ops = (">", "<") if bare.op == "!=" else (bare.op,)
         ways = [Cmp(op, bare.left, bare.right) for op in ops]
         way = next((way for way in ways if _satisfied(way, points)), ways[0])

@@ -221,18 +221,13 @@ class Obligation:
 
     def smooth(self) -> Obligation:
         """Return the obligation with its claims split into smooth ones."""
-        return replace(
-            self, questions=_each_once(part for q in self.questions for part in q.smooth())
-        )
+        parts = dict.fromkeys(part for q in self.questions for part in q.smooth())
+        return replace(self, questions=tuple(parts))
 
     def asking(self, questions: Callable[[], Iterable[Question]], law: str) -> Obligation:
         """Return the obligation with questions, or left open if `law` has too many branches."""
         try:
-            return replace(self, questions=_each_once(questions()))
+            return replace(self, questions=tuple(dict.fromkeys(questions())))
         except TooManyBranchesError as error:
             reason = f"{law} has more than {error.most} branches; use fewer kinks"
             return replace(self, open_because=reason)
-
-
-def _each_once(questions: Iterable[Question]) -> tuple[Question, ...]:
-    return tuple(dict.fromkeys(questions))

@@ -127,8 +127,7 @@ class _Trees:
             return Call("pow", tuple(map(self, expr.args)))
         if isinstance(expr, FUNCTIONS):
             return Call(type(expr).__name__, (self(expr.args[0]),))
-        msg = f"{type(expr).__name__} is nothing that a system has"
-        raise TypeError(msg)
+        raise TypeError(f"{type(expr).__name__} is nothing that a system has")
 
     def _ordered(self, args: tuple[sp.Expr, ...]) -> list[Expr]:
         return sorted(map(self, args), key=lambda tree: write(tree, STYLE))
