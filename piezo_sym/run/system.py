@@ -49,7 +49,7 @@ class DrivenModule:
         return tuple(row for r, row in zip(records, self.rows(records), strict=True) if r.bank)
 
     def noise(self, x: FloatArray) -> FloatArray:
-        """Return how far round-off of temperatures moves each state (n,) near the state x (n,).
+        """Return how far round-off of temperatures and states moves each state (n,) near x (n,).
 
         At rest a state is nothing else: no step resolves it. A rate's round-off moves the state for
         about as long as the state's own motion takes, or its exchange with another state.
@@ -63,6 +63,7 @@ class DrivenModule:
             T = self.module.temperatures(x, self.parameters)[:, None]
             rise = np.abs(self.module.temperatures(x[:, None] + np.diag(step), self.parameters) - T)
             sizes = np.nan_to_num(np.min(T * step / rise, axis=0, initial=np.inf), posinf=0.0)
+            sizes = np.maximum(sizes, np.abs(x))
             pace = np.max(np.sqrt(slope * slope.T), axis=1)
             for _ in range(CHAIN):
                 moved = (slope - np.diag(np.diag(slope))) @ sizes / pace

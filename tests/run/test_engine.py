@@ -125,7 +125,7 @@ def test_a_compiler_that_fails_is_one_line(module, no_compiler):
 
 def test_a_compiler_that_writes_nothing_is_one_line(module, no_compiler):
     write_script(no_compiler / "cc", "echo cc 1")
-    assert "the compiler failed: exit status 0" in refused(module)
+    assert "the compiler failed: it makes no library" in refused(module)
 
 
 def test_a_compiler_that_writes_no_library_is_one_line(module, no_compiler):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from piezo_sym import simulate
+from piezo_sym import ramp, simulate
 from piezo_sym.spec.load import parse
 
 SPRING = """
@@ -50,3 +50,27 @@ def test_what_is_a_difference_of_large_terms_at_rest_begins_to_move(law, force):
         assert np.abs(run[name].values - other[name].values).max() <= 1e-5 * size
     assert np.abs(run.energy_residual.values).max() <= 8 * np.spacing(float(run.energy[0]))
     assert run.attrs["halvings"] < 100
+
+
+@pytest.mark.some(2)
+@pytest.mark.parametrize(
+    ("model", "rtol"),
+    [("stack_bouc_wen", 1e-4), ("stack_maxwell", 1e-7), ("stack_bouc_wen", 1e-7)],
+)
+def test_a_voltage_that_is_held_leads_to_rest_in_few_steps(model, rtol):
+    """At rest the rate of the momentum is a difference of forces, and all of it is round-off."""
+    ramped = {"inputs": {"V_in": ramp(0.0, 1.0, 0.0, 80.0)}, "duration": 3.0, "rtol": rtol}
+    run = simulate(model, times=[0.0, 1.0, 3.0], **ramped)
+    assert run.attrs["accepted_steps"] < 10_000  # else 10^5 and more
+    assert np.abs(run.energy_residual).max() <= 1e-14 * run.energy.max()
+    heat = run.entropy_residual * run.T_body
+    assert np.abs(heat).max() <= 1e-14 * run.energy.max()
+
+
+def test_a_run_goes_on_from_near_rest_in_few_steps():
+    """The flux of an inductor at rest is no more than the round-off of voltages."""
+    held = {"inputs": {"V_in": 80.0}, "rtol": 1e-7}
+    ramped = simulate("stack_maxwell", inputs={"V_in": ramp(0.0, 1.0, 0.0, 80.0)}, duration=3.0)
+    run = simulate("stack_maxwell", initial=ramped, duration=5.0, times=[8.0], **held)
+    assert run.attrs["accepted_steps"] < 1000
+    assert float(run.q[-1]) == pytest.approx(float(ramped.q[-1]), rel=1e-6)

@@ -80,6 +80,7 @@ typedef struct {
 #endif /* BENDS */
 #if defined(COSTATES) /* see residual.c */
     real *costate, *integrand; /* at a point */
+    real *term;                /* n: how large the terms of each rate are */
     real taken, scale;         /* entropy that the first body takes; factor on what processes book */
     mask loose, early;         /* lanes that may stop short of round-off; lanes that did */
     double allowed;            /* in units of noise: how far from their root they may be */
@@ -210,6 +211,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
 #if defined(COSTATES)
     PLACE(costate, n);
     PLACE(integrand, m->given);
+    PLACE(term, n);
 #endif /* COSTATES */
     m->fresh = m->slope; /* of one run there is no lane that keeps its slopes */
     if (REAL_WIDTH > 1)

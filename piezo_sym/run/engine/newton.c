@@ -237,6 +237,11 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
     return worst + lost;
 }
 
+#if defined(COSTATES)
+/* The lanes whose last changes are the round-off of rates; see residual.c. */
+static mask MODEL(is_round_off)(MODEL(block) *m, real h, mask where);
+#endif /* COSTATES */
+
 /*
  * Newton's method for the rates in some lanes, from those at hand; returns the lanes that converge.
  * A lane that has converged does not change while others go on.
@@ -282,6 +287,11 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         if (iteration > 1) { /* stagnation: round-off, or no root */
             const mask stays = (worst > m->stays * before) & none_of(good | renewed);
             good |= stays & (worst < (m->late == SOON || iteration > NOISY ? MOST_NOISE : 100.0));
+#if defined(COSTATES)
+            const mask small = going & stays & none_of(good) & (worst <= m->allowed);
+            if (m->late == SOON && any(small))
+                good |= MODEL(is_round_off)(m, h, small);
+#endif /* COSTATES */
             if (iteration > m->late)
                 going &= none_of(stays & none_of(good));
         }
