@@ -36,8 +36,10 @@ EVENT = "times of event"
 KNOWN = "a state, input, y_<port>, T_<body> or parameter"
 #: A quantity of an element, as `spring.effort`: no name of the language of laws.
 QUANTITY = re.compile(r"\b([A-Za-z_]\w*)\.([A-Za-z_]\w*)")
-#: Samples inside a bracket in one pass, and the most passes.
-EVEN, ROUNDS = 63, 16
+#: Samples inside a bracket in one pass: around the zero of the chord, at these fractions of the
+#: bracket to either side; or evenly, where that did not narrow it by LITTLE. The most passes.
+AROUND = 2.0 ** np.array([-4.0, -12.0, -24.0, -40.0])
+EVEN, LITTLE, ROUNDS = 63, 1 / 16, 24
 
 
 @final
@@ -193,12 +195,15 @@ def locate(
             what = f"the condition holds at t = {times[0]:g} s already"
             raise UsageError(what, "simulate.stop", "one that does not hold at the start")
         first = np.flatnonzero(margin > 0)[:1].tolist()
-        brackets += [_Bracket("", watched.stop, times[[k - 1, k]]) for k in first]
+        pairs = (slice(k - 1, k + 1) for k in first)
+        brackets += [_Bracket("", watched.stop, times[pair], margin[pair]) for pair in pairs]
     for name, tree in watched.event.items():
-        signs = _signs(np.append(watched.signs.get(name, 0.0), values_of(system, tree, seen)))
+        values = values_of(system, tree, seen)
+        signs = _signs(np.append(watched.signs.get(name, 0.0), values))
         watched.signs[name] = float(signs[-1])
-        changed = np.flatnonzero((signs[1:] != signs[:-1]) & (signs[:-1] != 0)).tolist()
-        brackets += [_Bracket(name, tree, times[[max(k - 1, 0), k]]) for k in changed]
+        changed = np.flatnonzero((signs[1:] != signs[:-1]) & (signs[:-1] != 0))
+        ends = np.stack([np.maximum(changed - 1, 0), changed], axis=1)
+        brackets += [_Bracket(name, tree, times[pair], values[pair]) for pair in ends]
     located = [(b.name, float(b.times[1])) for b in _narrow(system, brackets, run)]
     end = next((t for name, t in located if not name), None)
     kept = [(name, t) for name, t in located if end is None or t <= end]
@@ -215,24 +220,35 @@ def _signs(values: FloatArray) -> FloatArray:
 @final
 @dataclass(frozen=True)
 class _Bracket:
-    """Two times [s] between which an expression changes its sign."""
+    """Two times [s] between which an expression changes its sign, and its values there."""
 
     name: str
     tree: Expr
     times: FloatArray
+    values: FloatArray
+    evenly: bool = False
 
     def inner(self) -> FloatArray:
         """Return the times between the two to sample next."""
         first, last = self.times.tolist()
-        times = np.unique(np.linspace(first, last, EVEN + 2))
-        return np.asarray(times[(times > first) & (times < last)])
+        low, high = self.values.tolist()
+        ways = [np.linspace(first, last, EVEN + 2)]
+        if not self.evenly and low * high < 0:
+            zero = first + (last - first) * (low / (low - high))
+            apart = (last - first) * AROUND
+            ways.insert(0, np.concatenate([[zero], zero - apart, zero + apart]))
+        inside = (np.unique(times[(times > first) & (times < last)]) for times in ways)
+        return next((times for times in inside if times.size), np.empty(0))
 
     def narrow(self, times: FloatArray, values: FloatArray) -> Self:
         """Return the bracket between the two of these times where the sign changes."""
         first, last = np.searchsorted(times, self.times)
-        times, signs = times[first : last + 1], _signs(values[first : last + 1])
+        times, values = times[first : last + 1], values[first : last + 1]
+        signs = _signs(values)
         k = int(np.argmax(signs == signs[-1])) or times.size - 1
-        return replace(self, times=times[[k - 1, k]])
+        evenly = times[k] - times[k - 1] > LITTLE * (times[-1] - times[0])
+        pair = slice(k - 1, k + 1)
+        return replace(self, times=times[pair], values=values[pair], evenly=bool(evenly))
 
 
 def _narrow(system: DrivenModule, brackets: list[_Bracket], run: Sampler) -> list[_Bracket]:
