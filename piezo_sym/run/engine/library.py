@@ -30,7 +30,16 @@ from piezo_sym.run.engine.c_sources import (
     stages_source,
     steps_source,
 )
-from piezo_sym.run.engine.compiler import FLAGS, Compiler, build, compilers, passed_by, processor
+from piezo_sym.run.engine.compiler import (
+    FLAGS,
+    QUICK,
+    WRITTEN_OUT,
+    Compiler,
+    build,
+    compilers,
+    passed_by,
+    processor,
+)
 from piezo_sym.run.module import GeneratedModule
 
 Layout = Literal["one", "many", "lanes", "slopes"]
@@ -168,8 +177,11 @@ def _flags(sources: Sources, flags: tuple[str, ...]) -> tuple[str, ...]:
     Automatic vectorization may change rounding, but steps of many runs in vectors, and of one run,
     must give equal numbers.
     """
-    exact = sources.stages and sources.layout != "lanes"
-    return (*flags, "-fno-tree-vectorize", "-fno-openmp-simd") if exact else flags
+    if not sources.stages or sources.layout == "lanes":
+        return flags
+    if sources.layout == "one" and {*WRITTEN_OUT} <= {*flags}:
+        flags = (*QUICK, *(flag for flag in flags if flag != "-O3"))
+    return (*flags, "-fno-tree-vectorize", "-fno-openmp-simd")
 
 
 def _key(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> str:
