@@ -143,9 +143,9 @@ def set_scales(
     first = systems[0]
     batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
     batch.largest[:] = first.scale(batch.largest)
-    quiet = (batch.largest < QUIET).any(axis=1)
+    quiet = (batch.largest < QUIET / tolerance).any(axis=1)
     for n in np.flatnonzero(quiet).tolist():
-        batch.noise[n] = systems[n].noise(x[n])
+        batch.noise[n] = systems[n].noise(x[n], batch.largest[n])
     if batch.noise.any():
         least = first.scale(OVER_NOISE * batch.noise / tolerance)
         batch.largest[:] = np.maximum(batch.largest, least)

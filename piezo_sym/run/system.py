@@ -16,8 +16,8 @@ from piezo_sym.run.inputs import Inputs, Segment
 from piezo_sym.run.module import GeneratedModule, Record, heat_exchanges, held, rows
 
 FLOOR = 1e-15  # so that no tolerance is 0
-#: Magnitudes of states that are at rest but for round-off; and round-off of temperatures, relative.
-QUIET, ROUND_OFF = 1e-12, 2e-16
+#: Errors, relative to 1 in SI, at which round-off may show in a state; and round-off, relative.
+QUIET, ROUND_OFF = 1e-15, 2e-16
 CHAIN = 3  # the most states from a temperature to one that its round-off moves
 MOST_QUIET = 300  # states of a model: the Jacobian of one with more takes too long
 
@@ -48,7 +48,7 @@ class DrivenModule:
         records = self.module.STATES
         return tuple(row for r, row in zip(records, self.rows(records), strict=True) if r.bank)
 
-    def noise(self, x: FloatArray) -> FloatArray:
+    def noise(self, x: FloatArray, largest: FloatArray) -> FloatArray:
         """Return how far round-off of temperatures and states moves each state (n,) near x (n,).
 
         At rest a state is nothing else: no step resolves it. A rate's round-off moves the state for
@@ -63,7 +63,7 @@ class DrivenModule:
             T = self.module.temperatures(x, self.parameters)[:, None]
             rise = np.abs(self.module.temperatures(x[:, None] + np.diag(step), self.parameters) - T)
             sizes = np.nan_to_num(np.min(T * step / rise, axis=0, initial=np.inf), posinf=0.0)
-            sizes = np.maximum(sizes, np.abs(x))
+            sizes = np.maximum(sizes, largest)
             pace = np.max(np.sqrt(slope * slope.T), axis=1)
             for _ in range(CHAIN):
                 moved = (slope - np.diag(np.diag(slope))) @ sizes / pace
