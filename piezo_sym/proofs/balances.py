@@ -164,7 +164,11 @@ def _exchange_questions(iphs: IPHS, assumptions: Assumptions) -> Iterator[Questi
 
 
 def _gradient(iphs: IPHS, assumptions: Assumptions) -> Iterator[Residual]:
-    """Yield the residual dU/dx - E for each state."""
+    """Yield the residual dU/dx - E for each state.
+
+    Where normal forms do not show that it is zero, branches may show that the energies' slope is
+    the law of the spec: that says something of E only if E is that law.
+    """
     stored: dict[str, list[tuple[Energy, sp.Expr]]] = {}
     for energy in iphs.energies:
         law = iphs.symbols.law(energy.law, {})
@@ -179,7 +183,7 @@ def _gradient(iphs: IPHS, assumptions: Assumptions) -> Iterator[Residual]:
         difference = sp.Add(*(factor * sp.diff(part, state) for factor, part in parts)) - costate
         residual, empty = sp.expand(sp.together(difference)), tuple[Question, ...]()
         rise = add(*(slope(energy.law, port.state) for energy, _ in own))
-        if residual != 0:
+        if residual != 0 and costate == iphs.symbols.law(port.law, {}):
             try:
                 empty = tuple(_slope_questions(iphs, rise, port.law, port.state, assumptions))
                 residual = residual if empty else sp.S.Zero

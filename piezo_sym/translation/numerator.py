@@ -5,14 +5,17 @@ The polynomials are FLINT's: products of sums with hundreds of terms take millis
 """
 
 from collections.abc import Collection
+from contextlib import suppress
 from fractions import Fraction
 from math import lcm
 from operator import neg, sub
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
+from piezo_sym.translation.change import put
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.signs import has_sign
+from piezo_sym.translation.functions import power
+from piezo_sym.translation.signs import has_sign, on_path, sign_of
 
 MOST_TERMS = 200_000
 #: FLINT multiplies two terms this many times faster than `GeneratorField`, where a product takes
@@ -102,14 +105,47 @@ class _Roots:
 def vanishes(value: Value) -> bool:
     """Return whether a value's numerator has no terms, its generators taken as independent.
 
-    Powers of sums are written out, and letters if it has terms without.
+    Powers of sums are written out, and if it has terms then, letters: one is replaced by a name
+    where it can be, which multiplies nothing out, and written out where not.
     """
     if not value.terms:
         return True
     roots = _Roots(value)
-    spelled = any(roots.gens[g].kind == "letter" for g in roots.order)
-    ways = (("power",), ("power", "letter"))[: 1 + spelled]
-    return any(roots.numerator(value, kinds).is_zero() for kinds in ways)
+    if roots.numerator(value, ("power",)).is_zero():
+        return True
+    letters = [g for g in reversed(roots.order) if roots.gens[g].kind == "letter"]
+    new = next(filter(None, (renamed(value, letter) for letter in letters)), None)
+    if new is not None:
+        return vanishes(new)
+    return bool(letters) and roots.numerator(value, ("power", "letter")).is_zero()
+
+
+def renamed(value: Value, letter: int) -> Value | None:
+    """Return a value with a name in place of a letter that is linear in a state, else None.
+
+    Its factor is not zero, and the state is expressed by the name: as the name takes all values
+    when the state does, an equation holds for all values of the one if for all of the other.
+    """
+    field, arg = value.field, value.field.gens[letter].arg
+    assert arg is not None
+    linear = not any(field.gens[g].kind == "sign" for g in arg.parts)
+    for g in sorted(arg.parts & field.states) if linear else ():
+        own = Value(field, {mono: c for mono, c in arg.terms.items() if (g, 1) in mono})
+        rest, factor = arg - own, own * Value(field, {((g, -1),): 1})
+        alone = g not in factor.parts | rest.parts and not sign_of(field, g)
+        if alone and has_sign(factor) and arg.lanes == field.gens[g].lanes:
+            bank, lane = next(iter(arg.lanes), (None, 0))
+            new = field.name(f"letter {letter}", bank, lane)
+            field.states |= new.parts
+            with suppress(NotShownError):  # the name would come into a sum over lanes
+                return put(value, {letter: new, g: (new - rest) * inverse(factor)})
+    return None
+
+
+def inverse(value: Value) -> Value:
+    """Return 1/value; nothing is noted of its divisor."""
+    with on_path(value.field, None):
+        return power(value, Fraction(-1))
 
 
 def vanishes_with(value: Value, other: Value) -> bool:

@@ -7,15 +7,14 @@ Denominators are multiplied out.  A sum over lanes is zero if its terms are.
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from fractions import Fraction
 from itertools import product
 
 from piezo_sym.translation.change import put
 from piezo_sym.translation.field import NotShownError, Value
-from piezo_sym.translation.functions import by_cosh, power
-from piezo_sym.translation.numerator import divisors, vanishes, vanishes_with
+from piezo_sym.translation.functions import by_cosh
+from piezo_sym.translation.numerator import divisors, inverse, renamed, vanishes, vanishes_with
 from piezo_sym.translation.possible import impossible
-from piezo_sym.translation.signs import has_sign, on_path, sides_of, sign, sign_of
+from piezo_sym.translation.signs import has_sign, sides_of, sign
 
 MOST_CASES = 500
 Case = tuple[Value, dict[Value, int]]
@@ -55,25 +54,10 @@ def edges_of(value: Value) -> Edges:
 
 
 def _spelled(value: Value, letter: int) -> Value:
-    """Return a value without a letter.
-
-    If the letter's value is linear in a state with a nonzero factor, a new name replaces the letter
-    and the state is expressed by it: as the name takes all values when the state does, the equation
-    holds for all values of the one if for all of the other.  Else the letter is written out.
-    """
-    field, arg = value.field, value.field.gens[letter].arg
+    """Return a value without a letter: renamed if it can be, else written out."""
+    new, arg = renamed(value, letter), value.field.gens[letter].arg
     assert arg is not None
-    linear = not any(field.gens[g].kind == "sign" for g in arg.parts)
-    for g in sorted(arg.parts & field.states) if linear else ():
-        own = Value(field, {mono: c for mono, c in arg.terms.items() if (g, 1) in mono})
-        rest, factor = arg - own, own * Value(field, {((g, -1),): 1})
-        alone = g not in factor.parts | rest.parts and not sign_of(field, g)
-        if alone and has_sign(factor) and arg.lanes == field.gens[g].lanes:
-            bank, lane = next(iter(arg.lanes), (None, 0))
-            new = field.name(f"letter {letter}", bank, lane)
-            field.states |= new.parts
-            return put(value, {letter: new, g: (new - rest) * _inverse(factor)})
-    return put(value, {letter: arg})
+    return put(value, {letter: arg}) if new is None else new
 
 
 def _is_zero(value: Value, *, edges: Edges) -> bool:
@@ -252,10 +236,5 @@ def _solved(d: Value) -> dict[int, Value]:
         if g in factor.parts | rest.parts or (powers != {1} and (rest.terms or min(powers) < 0)):
             continue
         if has_sign(factor):
-            return {g: -(rest * _inverse(factor))}
+            return {g: -(rest * inverse(factor))}
     return {}
-
-
-def _inverse(value: Value) -> Value:
-    with on_path(value.field, None):
-        return power(value, Fraction(-1))

@@ -112,6 +112,15 @@ def test_a_wrong_energy_is_no_hamiltonian(iphs):
     assert verdicts(replace(iphs, energies=wrong))["energy"] is not Verdict.PROVED
 
 
+@pytest.mark.parametrize("times", [-1, 2])
+@pytest.mark.parametrize("row", range(5))
+def test_a_costate_other_than_the_energy_s_slope_is_noticed(iphs, row, times):
+    """Also where the law that the spec gives the store is the slope."""
+    symbol, law = iphs.costates[row]
+    wrong = (*iphs.costates[:row], (symbol, times * law), *iphs.costates[row + 1 :])
+    assert verdicts(replace(iphs, costates=wrong))["energy"] is not Verdict.PROVED
+
+
 def test_the_paper_s_y_s_with_dU_dx_breaks_the_entropy_balance(iphs):
     """The paper prints y_s = g^T dU/dx; with it the balance does not close."""
     system = iphs.system
