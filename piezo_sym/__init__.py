@@ -29,7 +29,14 @@ if TYPE_CHECKING:  # "as" makes them public for type checkers
     from piezo_sym.api import steady_branches as steady_branches
     from piezo_sym.build import generate as generate
     from piezo_sym.derivation import derive as derive
+    from piezo_sym.errors import EngineError as EngineError
+    from piezo_sym.errors import FileError as FileError
+    from piezo_sym.errors import NetworkError as NetworkError
     from piezo_sym.errors import PiezoError as PiezoError
+    from piezo_sym.errors import ProofError as ProofError
+    from piezo_sym.errors import RunError as RunError
+    from piezo_sym.errors import SpecError as SpecError
+    from piezo_sym.errors import UsageError as UsageError
     from piezo_sym.linearization import linearize as linearize
     from piezo_sym.run import chirp as chirp
     from piezo_sym.run import ramp as ramp
@@ -46,13 +53,14 @@ if TYPE_CHECKING:  # "as" makes them public for type checkers
     from piezo_sym.verification import verify as verify
 
 _STEADY = ("operating_point", "periodic_steady_state", "periodic_steady_states", "steady_branches")
+_ERRORS = ("EngineError", "FileError", "NetworkError", "ProofError", "RunError", "SpecError")
 #: Where the public names are.
 _NAMES: dict[str, tuple[str, ...]] = {
     "analysis.dashboard": ("plot",),
     "api": ("Stepper", "simulate", *_STEADY),
     "build": ("generate",),
     "derivation": ("derive",),
-    "errors": ("PiezoError",),
+    "errors": ("PiezoError", "UsageError", *_ERRORS),
     "linearization": ("linearize",),
     "run": ("chirp", "ramp", "samples", "samples_from_csv", "sine", "square", "step", "triangle"),
     "spec.layered": ("layered",),

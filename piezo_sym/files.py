@@ -7,6 +7,7 @@ import atexit
 import os
 import shutil
 import tempfile
+import warnings
 from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache
@@ -133,6 +134,18 @@ def zarr_library(where: str) -> Any:
         remedy = "run `pip install 'piezo_sym[store]'`"
         raise UsageError("zarr is not installed", where, remedy=remedy) from error
     return zarr
+
+
+def consolidate(path: Path) -> None:
+    """Write consolidated metadata, without which xarray warns when it opens the store.
+
+    zarr warns that its format 3 does not define them yet.
+    """
+    import zarr
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        zarr.consolidate_metadata(path, zarr_format=3)
 
 
 def path_of(value: object, where: str) -> Path:

@@ -18,6 +18,12 @@ count = 3                   # cells; a parameter that is a list has a value for 
 [banks.creep.elements]      # of one cell; nodes that stand in no other table are its own
 slow = { kind = "spring", between = ["tip", "middle"], stiffness = "k" }
 loss = { kind = "damper", between = ["middle", "wall"], force = "d*v", heats = "body" }"""
+CHAIN = """[banks.creep]               # Kelvin-Voigt's, in a chain from base to wall; d > 0
+count = 3
+series = ["base", "wall"]
+[banks.creep.elements]      # each between the ends of its cell, which go by these names
+slow = { kind = "spring", between = ["base", "wall"], stiffness = "k" }
+loss = { kind = "damper", between = ["base", "wall"], force = "d*v", heats = "body" }"""
 OPERATORS = (
     ("+ - * /", "as usual", "R*(1 + al*(T - T_0))"),
     ("**", "a power, by a whole number or a small fraction", "d*v**3"),
@@ -45,6 +51,7 @@ def kinds(
     rows = ((name, doc.partition("\n")[0]) for name, doc in docs.items())
     print_table(title, ("kind", "what it is"), rows)
     typer.echo(f"Several alike, in parallel: count = 3 in an element. Cells of several:\n\n{CELLS}")
+    typer.echo(f"\nCells in series, a chain:\n\n{CHAIN}")
 
 
 def _meant(kind: str) -> str:

@@ -11,6 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
+from math import prod
 from typing import Any, final
 
 from flint import fmpz
@@ -87,8 +88,7 @@ def raised(name: str, power: Fraction | int) -> str:
 def parse_unit(text: str, where: str = "unit", value: float | None = None) -> Unit:
     """Return the unit that `text` names; `value` is a value in it, for the message.
 
-    Raises `SpecError` if the text is not of the grammar, names no unit, or a unit with an offset
-    (degC).
+    Raises `SpecError` if the text is not of the grammar, no unit, or one with an offset (degC).
     """
     try:
         return _known(text)
@@ -110,8 +110,10 @@ def _read(text: str, where: str, value: float | None) -> Unit:
     alone = len(names) == 1 and names[0][1] == 1
     terms = [(_named(name, where, value, alone, text), power) for name, power in names]
     for unit, power in terms:
-        factor *= _raised(unit.factor, power, text, where)
+        factor *= _raised(unit.factor, power)
         dimension = [d + p * power for d, p in zip(dimension, unit.dimension, strict=True)]
+    if not factor:
+        raise _no_root(terms, text, where, value)
     as_written = all(unit.si == unit.text != "1" for unit, _ in terms)
     si = text if as_written else _spelled([(unit.si, power) for unit, power in terms])
     return Unit(text, si, factor, tuple(dimension))
@@ -167,15 +169,22 @@ def _powers(tree: Expr) -> Terms:
     raise RefusedError("is not a product of powers")
 
 
-def _raised(factor: Fraction, power: Fraction, text: str, where: str) -> Fraction:
-    """Return a power of a factor, which has to be a rational number."""
+def _raised(factor: Fraction, power: Fraction) -> Fraction:
+    """Return a power of a factor, or 0 if it is no rational number."""
     order, size = power.denominator, factor**power.numerator
-    root = Fraction(*(int(fmpz(n).root(order)) for n in (size.numerator, size.denominator)))
-    if root**order != size:
-        what = f"unit {quote(text)} has a root of {factor}, which is no exact number"
-        remedy = f"give the value in SI, times {float(factor) ** float(power):.12g}"
-        raise SpecError(what, where, "a root of coherent SI units, such as Pa**(1/2)", remedy)
-    return root
+    root = Fraction(*(int(fmpz(n).root(order)) for n in size.as_integer_ratio()))
+    return root if root**order == size else Fraction(0)
+
+
+def _no_root(terms: list[Any], text: str, where: str, value: float | None) -> SpecError:
+    """Return the error of a unit with roots of factors that are no rational numbers."""
+    rooted = [(unit.factor, power) for unit, power in terms if not _raised(unit.factor, power)]
+    factor = prod(float(size) ** float(power) for size, power in rooted)
+    meant = _spelled([(u.text if _raised(u.factor, p) else u.si, p) for u, p in terms])
+    given = f"the value, times {factor:.12g}," if value is None else f"{value * factor:.12g}"
+    remedy = f"give {given} in {meant}"
+    what = f"unit {quote(text)} has a root of {rooted[0][0]}, which is no exact number"
+    return SpecError(what, where, "a root of coherent SI units, such as Pa**(1/2)", remedy)
 
 
 @cache
@@ -190,8 +199,7 @@ def _registry() -> Any:
 def _named(name: str, where: str, value: float | None, alone: bool = True, text: str = "") -> Unit:
     """Return one named unit of a text; its coherent spelling drops the prefix (``uF`` gives ``F``).
 
-    A unit with an offset is a temperature if it stands `alone`, otherwise a temperature difference,
-    as in W/degC.
+    One with an offset is a temperature if it stands `alone`, else a difference, as in W/degC.
     """
     prefix = name[:1] if name[1:] in COHERENT.keys() - {"1", "kg"} else ""
     if name in COHERENT or prefix in PREFIXES:

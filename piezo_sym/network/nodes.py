@@ -3,6 +3,7 @@
 Input: a `Circuit`.  Output: nothing, or one `NetworkError` that names the node and its elements.
 """
 
+import json
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from typing import TypeVar
 
@@ -137,7 +138,9 @@ def _check_chains(circuit: Circuit, users: Mapping[str, list[str]]) -> None:
         for node, end in zip(lane_ends(bank), pair, strict=True):
             if len(users[node]) < 2:
                 what = f"no cell connects to {quote(end)}, an end of all in series"
-                raise NetworkError(what, f"banks.{bank}", "cells between both ends", "connect one")
+                remedy = f"write between = {json.dumps(pair)} in an element that spans its cell, or"
+                remedy += " one of both in two that meet at a node of the cell"
+                raise NetworkError(what, f"banks.{bank}", "cells between both ends", remedy)
     for placed in circuit.ports:
         if (ends := circuit.chains.get(placed.bank or "")) is None:
             continue

@@ -175,11 +175,40 @@ def domain_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -
 
 def broken(system: DrivenModule, x: FloatArray, u: FloatArray) -> tuple[str, str]:
     """Return the failed condition of least depth, and a message with its margin and values."""
-    failed = np.flatnonzero(system.violated(x, u)).tolist()
-    row = min(failed, key=lambda k: depth(system, system.module.DOMAIN[k].text))
+    row = first_broken(system, x, u)
+    return system.module.DOMAIN[row].text, shown_condition(system, row, x, u)
+
+
+def first_broken(system: DrivenModule, x: FloatArray, u: FloatArray) -> int:
+    """Return the row of the failed condition of least depth."""
+    failed: list[int] = np.flatnonzero(system.violated(x, u)).tolist()
+    return min(failed, key=lambda k: depth(system, system.module.DOMAIN[k].text))
+
+
+def shown_condition(system: DrivenModule, row: int, x: FloatArray, u: FloatArray) -> str:
+    """Return a condition of the domain for a message, with its margin and values."""
     text, margin = system.module.DOMAIN[row].text, system.margins(x, u)[row]
     values = ", ".join(shown_value(*value) for value in values_in(system, text, x, u))
-    return text, f"condition '{text}' has margin {margin:.3g} ({values})"
+    return f"condition '{text}' has margin {margin:.3g} ({values})"
+
+
+def edge_ahead(
+    system: DrivenModule, x: FloatArray, u: FloatArray, *lengths: float
+) -> tuple[str, str]:
+    """Return the condition that fails first ahead of the state, and a message; or '' twice.
+
+    It is looked for after times of these lengths [s], at the rates that the state has.
+    """
+    with np.errstate(all="ignore"):
+        rates = system.module.rhs(x, u, system.parameters)
+    for length in lengths:
+        with np.errstate(all="ignore"):
+            ahead = x + length * rates
+        if np.isfinite(ahead).all() and np.any(system.violated(ahead, u)):
+            row = first_broken(system, ahead, u)
+            text = system.module.DOMAIN[row].text
+            return text, f"{shown_condition(system, row, x, u)}, and falls"
+    return "", ""
 
 
 def rate_error(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> RunError:

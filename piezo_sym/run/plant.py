@@ -19,7 +19,13 @@ from piezo_sym.run.dataset import Evaluation, Trajectory
 from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.records import POINTER, at, c_record
-from piezo_sym.run.guard import check_start, domain_error, input_conditions
+from piezo_sym.run.guard import (
+    check_start,
+    domain_error,
+    edge_ahead,
+    input_conditions,
+    remedies,
+)
 from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.module import GeneratedModule, heat_exchanges, lanes, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters, start_of
@@ -31,6 +37,9 @@ if TYPE_CHECKING:
 
 Given: TypeAlias = Mapping[str, LaneValue]
 Start: TypeAlias = "Given | xarray.Dataset"
+
+#: The parts of a call's time, one after the other, in which a state is looked at ahead.
+AHEAD = (1e-6, 1e-4, 1e-2, 0.1, 0.3, 1.0)
 
 
 def read_plants(
@@ -104,7 +113,7 @@ class Plant:
     ) -> None:
         x = read_initial(system.module, system.parameters, u, initial)
         check_start(system, x)
-        self._system, self.start = system, x
+        self._system, self.start, self._step = system, x, stepping.fixed
         self.u, self.y = u, y
         layout = layout_of(1, x.size, side_by_side=False)
         given = engine, [system.parameters], x[None], system.inputs, np.empty(0)
@@ -119,7 +128,7 @@ class Plant:
 
     def record(self, steps: int, plants: int) -> Any:
         """Return MODEL(stepper) for the first of `plants` plants, with `steps` steps per call."""
-        batch = self._batch
+        batch, self._length = self._batch, steps * self._step
         return c_record("stepper")(
             *(batch.address, batch.run, batch.inputs.segments[0].signals),
             *(at(self.u), at(self.y), *self._functions),
@@ -167,7 +176,11 @@ class Plant:
         margins = self._margins[self._conditions]
         if not np.all((margins > 0) | ((margins == 0) & (self._strict == 0))):  # nan lies outside
             return domain_error(self._system, t, self._batch.x[0], self.u)
-        what = f"no step stays in the domain at t = {t:.6g} s"
+        what, length = f"no step stays in the domain at t = {t:.6g} s", self._length
+        x, lengths = self._batch.x[0], (part * length for part in AHEAD)
+        if (edge := edge_ahead(self._system, x, self.u, *lengths))[0]:
+            remedy = f"change {listing(remedies(self._system, edge[0]))}"
+            return RunError(f"{what}: {edge[1]}", "Stepper.step", remedy=remedy)
         return RunError(what, "Stepper.step", remedy="look at the inputs, or take shorter steps")
 
 

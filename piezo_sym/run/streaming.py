@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from piezo_sym.errors import FileError, RunError, UsageError, quote
-from piezo_sym.files import path_text, zarr_library
+from piezo_sym.files import consolidate, path_text, zarr_library
 from piezo_sym.interrupts import held_back
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.events import read_watched
@@ -179,5 +179,7 @@ def _open(path: Path, window: xarray.Dataset, events: list[str]) -> xarray.Datas
     """Return the Dataset of a store, in the order of a window: Zarr keeps none."""
     import xarray
 
+    with held_back():
+        consolidate(path)
     run = xarray.open_dataset(path, engine="zarr", consolidated=False)
     return run[[*window.data_vars, *events]]

@@ -9,15 +9,18 @@ import numpy as np
 
 from piezo_sym.errors import STICKING, RunError, listing, quote
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.guard import depth, place, remedies
+from piezo_sym.run.engine.library import read_source
+from piezo_sym.run.guard import edge_ahead, place, remedies
 from piezo_sym.run.module import UNPROVED, by_name, is_unproved, row_names
 from piezo_sym.run.system import DrivenModule
 
 #: A state [SI] beyond this size has grown without bound; so has one this many times as large as
 #: before, or as its first rate would make it, that would grow so many times more in as long again.
 GROWN, GROWTH, FASTER = 1e100, 1e6, 10.0
-#: The part of the time so far in which the state is looked at ahead.
+#: The part of the time so far, and then of the run, in which the state is looked at ahead.
 AHEAD = 1e-9
+#: What to write for laws with infinite slopes, and for laws with terms that overflow.
+STEEP = "write x/(x**2 + x_0**2)**(1/4) for sign(x)*sqrt(abs(x)), 1 - tanh(x)**2 for 1/cosh(x)**2"
 #: The least part of the largest energy that a negative one counts as.
 PART = 1e-2
 
@@ -27,22 +30,26 @@ def stuck_error(
 ) -> RunError:
     """Return the error of a run that stopped at t [s] in x (n,); of `samples` (nt, n) some nan."""
     module, u = system.module, system.inputs.at_samples(np.array([t]))[:, 0]
-    why = "no step stays in the domain, or a law that jumps (sign) holds the state at its jump"
-    remedy = f"look at inputs and state; allow more room in [domain]; {STICKING}"
+    why = "no step stays in the domain"
+    remedy = "look at inputs and state; allow more room in [domain]"
+    if f"{module.NAME}_jumps = 1" in read_source(module, "_step.c"):
+        why += ", or a law that jumps (sign) holds the state at its jump"
+        remedy += f"; {STICKING}"
+    past, duration = t - system.inputs.start, system.inputs.duration
+    edge = edge_ahead(system, x, u, AHEAD * past, AHEAD * duration)
     if is_unproved(module):
         why = f"each step leaves the domain or consumes entropy, and the model is {UNPROVED}"
         remedy = "mend what `piezo-sym verify` refutes; or take method LSODA, which goes on"
-    elif edge := _edge(system, t, x, u):
-        margin = system.margins(x, u)[[c.text for c in module.DOMAIN].index(edge)]
-        why = f"condition '{edge}' has margin {margin:.3g}, and falls{_fallen(system, x, u)}"
-        remedy = f"change {listing(remedies(system, edge))}"
+    elif edge[0]:
+        why = edge[1] + _fallen(system, x, u)
+        remedy = f"change {listing(remedies(system, edge[0]))}"
     elif growing := list(_growing(system, t, x, samples)):
         why = f"{listing(map(quote, growing))} grow{'s' * (len(growing) == 1)} without bound"
         why += _fallen(system, x, u)
         remedy = "check the signs of laws: a spring pulls back by k*q, not by -k*q"
-    elif steep := system.overflowing(t, x):
-        why = f"the slopes of its laws by {listing(map(quote, steep))} overflow there"
-        remedy = "write laws in which no term does: 1/cosh(x)**2 may, 1 - tanh(x)**2 does not"
+    elif steep := system.steep(t, x):
+        why = f"the slopes of its laws by {listing(map(quote, steep))} are infinite there"
+        why, remedy = f"{why}, or nearly", STEEP
     names = [record.name for record in module.STATES]
     rows = system.rows(module.STATES)
     values = ", ".join(f"{n} = {x[row.start]:.6g}" for n, row in zip(names, rows, strict=True))
@@ -61,16 +68,6 @@ def _growing(system: DrivenModule, t: float, x: FloatArray, samples: FloatArray)
         larger = (known > 0) & (np.abs(x) > GROWTH * known)  # what rested has no size
         larger &= (rates * x > 0) & (np.abs(rates) * (t - start) > FASTER * np.abs(x))
     yield from (names[n] for n in np.flatnonzero(larger | (np.abs(x) > GROWN)))
-
-
-def _edge(system: DrivenModule, t: float, x: FloatArray, u: FloatArray) -> str:
-    """Return the condition of the domain that fails just ahead of the state, or ''."""
-    with np.errstate(all="ignore"):
-        rates = system.module.rhs(x, u, system.parameters)
-        ahead = x + AHEAD * (t - system.inputs.start) * rates
-    failed = np.flatnonzero(system.violated(ahead, u)).tolist() if np.isfinite(ahead).all() else []
-    texts = [system.module.DOMAIN[row].text for row in failed]
-    return min(texts, key=lambda text: depth(system, text), default="")
 
 
 def _fallen(system: DrivenModule, x: FloatArray, u: FloatArray) -> str:

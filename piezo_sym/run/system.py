@@ -20,6 +20,7 @@ FLOOR = 1e-15  # so that no tolerance is 0
 QUIET, ROUND_OFF = 1e-15, 2e-16
 CHAIN = 3  # the most states from a temperature to one that its round-off moves
 MOST_QUIET = 300  # states of a model: the Jacobian of one with more takes too long
+INSTANT = 1e-14  # the part of a run that a motion takes whose slope is as good as infinite
 
 
 @final
@@ -94,15 +95,21 @@ class DrivenModule:
         with np.errstate(all="ignore"):
             return np.isfinite(self.module.rhs(x, u, self.parameters))
 
-    def overflowing(self, t: float, x: FloatArray) -> tuple[str, ...]:
-        """Return the names of states by which slopes of rates are no finite numbers, at t [s]."""
+    def steep(self, t: float, x: FloatArray) -> tuple[str, ...]:
+        """Return the names of states by which slopes of rates are infinite, or nearly, at t [s].
+
+        A motion of its own, or of two states, takes less than a run's part `INSTANT`.
+        """
         if x.size > MOST_QUIET:
             return ()
-        u = self.inputs.at_samples(np.array([t]))[:, 0]
+        u, duration = self.inputs.at_samples(np.array([t]))[:, 0], self.inputs.duration
         with np.errstate(all="ignore"):
-            finite = np.isfinite(self.module.jacobian(x, u, self.parameters))
+            slope = np.abs(self.module.jacobian(x, u, self.parameters))
+            known = np.where(np.isfinite(slope), slope, 0.0)
+            pace = np.sqrt(known) * np.sqrt(known.T)
+        gentle = np.isfinite(slope) & (pace * duration < 1 / INSTANT)
         states = zip(self.module.STATES, self.rows(self.module.STATES), strict=True)
-        return tuple(state.name for state, row in states if not finite[:, row].all())
+        return tuple(state.name for state, row in states if not gentle[:, row].all())
 
     def rates(self, x: FloatArray, u: FloatArray) -> FloatArray:
         """Return the rates of the ledger, (ports + 2 processes + exchanges, *batch).

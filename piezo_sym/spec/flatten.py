@@ -8,6 +8,7 @@ cells say which bank they are in: ``creep_spring`` of bank ``creep``, between ``
 own.
 """
 
+import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -214,9 +215,12 @@ def _check_cell_element(element: Element, place: str, where: str) -> None:
         remedy = f"write it in [elements], with nodes that cells of {where} name, too"
         raise SpecError(what, place, "a store, a dissipative element, a stop or hysteron", remedy)
     for key in ("count", "bank", "series"):
-        if getattr(element, key) is not None:
-            expected = f"count and series in [{where}]"
-            raise SpecError(f"{key} is given in a cell", f"{place}.{key}", expected, "leave it out")
+        if (given := getattr(element, key)) is not None:
+            expected, remedy = f"count and series in [{where}]", "leave it out"
+            if key == "series":
+                ends = json.dumps(given)
+                remedy = f"write series = {ends} there, and between = {ends} in a cell's elements"
+            raise SpecError(f"{key} is given in a cell", f"{place}.{key}", expected, remedy)
 
 
 def _cell_node(bank: str, outside: set[str], place: str, node: str) -> str:

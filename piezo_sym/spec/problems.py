@@ -28,11 +28,10 @@ ENTRIES = {  # what to write for an entry of a table
 }
 NEEDED = {  # examples of keys whose name alone does not say what to write
     "unit": 'unit = "N/m", say; unit = "1" where there is none',
-    "heats": 'heats = "body", the name of an element of kind thermal_mass',
     "value": "value = 1.0, or a list of one per lane",
 }
-
-
+#: The kind of what takes heat.
+BODY = "thermal_mass"
 #: The keys for the nodes of an element, each taken for the other.
 NODES = {
     "at": "it stands at one node, and its other one is the reference",
@@ -53,7 +52,7 @@ def all_problems(error: ValidationError, spec: Mapping[str, Any]) -> SpecError:
     unknown = [d for d in details if d["type"] == FIRST[0]]
     meant = {(*d["loc"][:-1], _meant_key(d, _left(d, spec))) for d in unknown}
     found = (
-        _unknown_key(d, _left(d, spec)) if d["type"] == FIRST[0] else _problem(d)
+        _unknown_key(d, _left(d, spec)) if d["type"] == FIRST[0] else _problem(d, spec)
         for d in details
         if d["type"] != "missing" or d["loc"] not in meant
     )
@@ -121,7 +120,7 @@ def _where(detail: ErrorDetails) -> str:
     return ".".join(place) or "spec"
 
 
-def _problem(detail: ErrorDetails) -> SpecError:
+def _problem(detail: ErrorDetails, spec: Mapping[str, Any]) -> SpecError:
     place = [str(part) for part in detail["loc"]]
     known, where = _known(place), _where(detail)
     value = detail.get("input")
@@ -130,7 +129,7 @@ def _problem(detail: ErrorDetails) -> SpecError:
             entries = "1 entry is given" if len(value) == 1 else "no entry is given"
             return SpecError(entries, where.rpartition(".")[0], "two names, such as ['a', 'b']")
         case "missing":
-            return SpecError("is missing", where, remedy=_missing(place[-1], known))
+            return SpecError("is missing", where, remedy=_missing(place[-1], known, spec))
         case "union_tag_invalid":
             kind = value.get("kind") if isinstance(value, Mapping) else value
             remedy = nearest(str(kind), KINDS)
@@ -149,10 +148,20 @@ def _problem(detail: ErrorDetails) -> SpecError:
     return SpecError(f"{quote(value)} does not fit", where, _expected(detail))
 
 
-def _missing(key: str, known: Iterable[str]) -> str:
+def _missing(key: str, known: Iterable[str], spec: Mapping[str, Any]) -> str:
     """Return what to write for a key that is missing."""
-    more = NEEDED.get(key)
+    more = NEEDED.get(key) if key != "heats" else _heats(spec)
     return f"add {more}" if more else f"add it; known keys: {listing(known)}"
+
+
+def _heats(spec: Mapping[str, Any]) -> str:
+    """Return what to write for the body that an element heats: one of the spec, if it has any."""
+    elements = spec.get("elements")
+    table = elements if isinstance(elements, Mapping) else {}
+    hot = [n for n, e in table.items() if isinstance(e, Mapping) and e.get("kind") == BODY]
+    if not hot:
+        return f'heats = "body", and an element body of kind {BODY}: `piezo-sym kinds {BODY}`'
+    return f'heats = "{hot[0]}", {f"or another {BODY}" if hot[1:] else f"the {BODY}"}'
 
 
 def _number(value: object) -> str:

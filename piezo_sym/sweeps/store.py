@@ -11,7 +11,6 @@ from __future__ import annotations
 import hashlib
 import json
 import tempfile
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
@@ -22,7 +21,7 @@ import numpy as np
 import xarray
 
 from piezo_sym.errors import FileError, listing
-from piezo_sym.files import path_text, zarr_library
+from piezo_sym.files import consolidate, path_text, zarr_library
 from piezo_sym.interrupts import held_back
 from piezo_sym.sweeps.frame import ERROR_ATTRS, NOT_RUN, Results, Shape
 from piezo_sym.sweeps.plan import Plan, Region
@@ -143,18 +142,6 @@ def create(path: Path, plan: Plan, frame: xarray.Dataset, marks: dict[str, objec
     except OSError as cause:
         what = f"cannot be written: {cause.strerror}"
         raise FileError(what, path_text(path), remedy="check the path") from cause
-
-
-def consolidate(path: Path) -> None:
-    """Write consolidated metadata, without which xarray warns when it opens the store.
-
-    zarr warns that its format 3 does not define them yet.
-    """
-    import zarr
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
-        zarr.consolidate_metadata(path, zarr_format=3)
 
 
 @final

@@ -5,11 +5,13 @@ import tomllib
 
 import pytest
 
+from piezo_sym import PiezoError, derive, verify
 from piezo_sym.expressions.functions import FUNCTIONS
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.tree import Call, walk
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS
+from piezo_sym.spec.load import parse
 
 
 def test_every_kind_is_listed(call):
@@ -70,3 +72,40 @@ def test_show_lists_elements_with_values_states_and_what_was_assumed(call):
     assert "spring spring tip - wall stiffness = k = 500000 N/m q = 0 (not said)" in lines
     assert "ambient ambient body body, input T_e conductance = lam = 2 W/K" in lines
     assert "T_e K 298.15 temperature of the environment" in lines
+
+
+CHAINED = """
+[model]
+name = "creeping"
+[parameters]
+k_0 = { value = 1e6, unit = "N/m" }
+m = { value = 1.0, unit = "kg" }
+k = { value = [1e5, 2e5, 3e5], unit = "N/m" }
+d = { value = [1e3, 1e4, 1e5], unit = "N*s/m" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[inputs]
+F = { unit = "N" }
+[domain]
+assume = ["d > 0"]
+[elements]
+stiff = { kind = "spring", between = ["tip", "base"], stiffness = "k_0" }
+push = { kind = "force_source", at = "tip", input = "F" }
+mass = { kind = "mass", at = "tip", mass = "m" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+"""
+ENDS = '["base", "wall"]'
+
+
+def test_the_chain_that_kinds_shows_is_proved_and_others_are_told_what_to_write(call):
+    chain = CHAINED + call("kinds").out.partition("in series, a chain:\n")[2]
+    assert verify(derive(parse(chain))).proved
+    inside = chain.replace(f"series = {ENDS}\n", "")
+    inside = inside.replace('stiffness = "k" }', f'stiffness = "k", series = {ENDS} }}')
+    with pytest.raises(PiezoError, match="series is given in a cell") as caught:
+        parse(inside)
+    assert f"write series = {ENDS} there, and between = {ENDS} in a cell's" in str(caught.value)
+    apart = chain.replace(f"between = {ENDS}", 'between = ["x", "y"]')
+    with pytest.raises(PiezoError, match="no cell connects to 'base'") as caught:
+        derive(parse(apart))
+    assert f"write between = {ENDS} in an element that spans its cell" in str(caught.value)

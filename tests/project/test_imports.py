@@ -40,6 +40,18 @@ def test_importing_the_package_loads_no_library(tmp_path):
     assert found.isdisjoint({*HEAVY, "xarray", "numpy", "scipy", "pandas", "typer", "rich"})
 
 
+def test_errors_that_functions_name_are_had_from_the_package(tmp_path):
+    """So are the measures of loops, a module, once their package is imported."""
+    code = """
+import piezo_sym, piezo_sym.analysis
+names = "EngineError FileError NetworkError ProofError RunError SpecError UsageError"
+assert all(issubclass(getattr(piezo_sym, n), piezo_sym.PiezoError) for n in names.split())
+assert {*names.split()} < {*dir(piezo_sym)}
+print(piezo_sym.analysis.loops.area([0, 1, 2, 2, 2, 1, 0, 0], [0, 0, 0, 1, 2, 2, 2, 1]))
+"""
+    assert abs(float(run(code, tmp_path, str(ROOT)))) == 4.0
+
+
 def test_loading_a_spec_loads_no_sympy(tmp_path):
     found = loaded("import piezo_sym; piezo_sym.load('piezo_stack')", tmp_path)
     assert "pydantic" in found

@@ -2,7 +2,7 @@
 
 import pytest
 
-from piezo_sym import simulate
+from piezo_sym import Stepper, simulate, sine
 from piezo_sym.errors import RunError
 from piezo_sym.spec.load import parse
 
@@ -75,4 +75,81 @@ def test_an_edge_that_steps_cannot_reach_is_named() -> None:
     said = str(error.value)
     assert "condition 'C_0 + C_1*x > 0' has margin" in said
     assert "the energy of 'comb' has fallen to -" in said
+    assert "jumps" not in said
+
+
+#: A coil that heats itself up to an edge of the domain.
+HEATED = """
+[model]
+name = "heated"
+[parameters]
+L = { value = 1.0, unit = "mH" }
+R = { value = 4.0, unit = "ohm" }
+T_0 = { value = 300.0, unit = "K" }
+T_max = { value = 320.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[inputs]
+V_in = { unit = "V" }
+[domain]
+assume = ["R > 0", "T_winding < T_max"]
+[elements]
+supply = { kind = "voltage_source", between = ["in", "gnd"], input = "V_in" }
+coil = { kind = "inductor", between = ["in", "a"], inductance = "L", state = "phi" }
+copper = { kind = "resistor", between = ["a", "gnd"], voltage = "R*i", heats = "winding" }
+winding = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+"""
+
+
+def test_an_edge_is_named_with_its_values() -> None:
+    model = parse(HEATED)
+    for step in (None, 1e-4):
+        with pytest.raises(RunError) as error:
+            simulate(model, inputs={"V_in": 20.0}, duration=1.0, step=step)
+        said = str(error.value)
+        assert "condition 'T < T_max' has margin" in said
+        assert "(T_winding = 320 K, T_max = 320 K)" in said
+        assert "jumps" not in said
+
+
+@pytest.mark.parametrize(("step", "every"), [(1e-3, 1), (1e-4, 70), (2e-2, 1)])
+def test_a_stepper_names_the_edge(step: float, every: int) -> None:
+    stepper = Stepper(parse(HEATED), step=step, every=every)
+
+    def heat() -> None:
+        for _ in range(1000):
+            stepper.step([20.0])
+
+    with pytest.raises(RunError, match="no step stays in the domain at t = ") as error:
+        heat()
+    said = str(error.value)
+    assert "condition 'T < T_max' has margin" in said
+    assert "T_max = 320 K), and falls; change the inputs" in said
+
+
+ORIFICE = """
+[model]
+name = "orifice"
+[parameters]
+C = { value = 2e-13, unit = "m**3/Pa" }
+k = { value = 1e-6, unit = "m**3/s/Pa**(1/2)" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 2.0, unit = "J/K" }
+[inputs]
+Q = { unit = "m**3/s" }
+[domain]
+assume = ["k >= 0", "C > 0"]
+[elements]
+pump = { kind = "flow_source", between = ["a", "tank"], input = "Q" }
+volume = { kind = "accumulator", between = ["a", "tank"], capacitance = "C", state = "V" }
+leak = { kind = "orifice", between = ["a", "tank"], flow = "k*sign(dp)*sqrt(abs(dp))", heats = "oil" }
+oil = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+"""  # noqa: E501
+
+
+def test_a_slope_that_is_infinite_at_rest_is_named() -> None:
+    with pytest.raises(RunError) as error:
+        simulate(parse(ORIFICE), inputs={"Q": sine(1e-9, 200)}, duration=0.05, rtol=1e-9)
+    said = str(error.value)
+    assert "the slopes of its laws by 'V' are infinite there, or nearly" in said
+    assert "write x/(x**2 + x_0**2)**(1/4) for sign(x)*sqrt(abs(x))" in said
     assert "jumps" not in said

@@ -139,6 +139,23 @@ def test_heat_for_a_body_that_is_not_there():
     )
 
 
+def test_heat_for_no_body_is_answered_with_one_of_the_spec():
+    damper = 'force = "d*v"\nheats = "body"', 'force = "d*v"'
+    said = "spec: elements.damper.heats: is missing; add heats = "
+    assert refused_edit(damper).startswith(f'{said}"body", the thermal_mass')
+    extra = '[elements.plate]\nkind = "thermal_mass"\ntemperature = "T_0*exp(S/c_0)"\n\n'
+    more = damper, ("[elements.spring]", f"{extra}[elements.spring]")
+    assert refused_edit(*more).startswith(f'{said}"plate", or another thermal_mass')
+
+
+def test_heat_for_no_body_in_a_spec_without_any_says_to_add_one():
+    spring = '{ kind = "spring", between = ["tip", "wall"], stiffness = "k" }'
+    damper = '{ kind = "damper", between = ["tip", "wall"], force = "d*v" }'
+    text = f'[model]\nname = "cold"\n[elements]\nspring = {spring}\ndamper = {damper}\n'
+    message = str(refusal(parse, text))
+    assert 'add heats = "body", and an element body of kind thermal_mass' in message
+
+
 def test_heat_without_any_body_is_answered_with_one():
     text = edited_text(("[inputs]", "[inputs]"))
     start, end = text.index("[elements.transducer]"), text.index("[elements.load]")

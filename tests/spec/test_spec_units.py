@@ -230,7 +230,22 @@ def test_words_that_are_no_units(text, answer):
 def test_a_root_of_a_factor_that_is_no_exact_number_is_refused():
     error = refusal(parse_unit, "N/(mm/s)**(1/2)", "parameters.d.unit")
     assert "root of 1/1000" in error.what
-    assert error.remedy == "give the value in SI, times 31.6227766017"
+    assert error.remedy == "give the value, times 31.6227766017, in N/m**(1/2)*s**(1/2)"
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "number", "meant", "si"),
+    [
+        ("4", "l/min/bar**(1/2)", "0.0126491106407", "l/min/Pa**(1/2)", 4 / 6e4 / 1e5**0.5),
+        ("2.0", "kN/(mm/s)**(1/2)", "63.2455532034", "kN/m**(1/2)*s**(1/2)", 2e3 / 1e-3**0.5),
+        ("2.0", "bar**(1/2)*mm**(1/2)/ms", "20", "Pa**(1/2)*m**(1/2)/ms", 2e4),
+    ],
+)
+def test_a_unit_with_a_root_is_refused_with_what_to_write(value, unit, number, meant, si):
+    message = refused_edit(('value = 3.5e-3, unit = "kg"', f'value = {value}, unit = "{unit}"'))
+    assert message.startswith("spec: parameters.M.unit: ")
+    assert message.endswith(f"; give {number} in {meant}")
+    assert to_si(float(number), parse_unit(meant)) == pytest.approx(si, rel=1e-11)
 
 
 @pytest.mark.parametrize(

@@ -67,7 +67,7 @@ def check_model_name(word: str, where: str) -> str:
 
 def _check_unit(text: str, values: tuple[float, ...], where: str) -> None:
     """Check a unit, and that the values given in it exist in SI."""
-    unit = parse_unit(text, f"{where}.unit", values[0])
+    unit = parse_unit(text, f"{where}.unit", values[0] if len(values) == 1 else None)
     for value in values:
         size = abs(Fraction(repr(value)) * unit.factor)
         if size and not SMALLEST <= size <= LARGEST:
