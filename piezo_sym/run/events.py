@@ -24,7 +24,7 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Add, Call, Expr, Neg, names, rename
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import Evaluation, Trajectory, attributes, element_remedy
-from piezo_sym.run.module import row_names
+from piezo_sym.run.module import row_names, rows
 from piezo_sym.run.system import DrivenModule
 
 #: Returns the given times that the run reaches, and the run there.
@@ -154,7 +154,7 @@ def _quantity_names(system: DrivenModule) -> list[str]:
         *(record.name for record in module.INPUTS),
         *(f"y_{record.name}" for record in module.OUTPUTS),
         *(f"T_{record.name}" for record in module.BODIES),
-        *(record.name for record in module.PARAMETERS if not record.bank),
+        *row_names(module.PARAMETERS, p),
         *row_names(module.ELEMENTS, p),
     ]
 
@@ -164,7 +164,12 @@ def _quantity_values(
 ) -> dict[str, list[float]]:
     module, p = system.module, system.parameters
     x, u = trajectory.states, trajectory.inputs
-    fixed = [getattr(p, record.name) for record in module.PARAMETERS if not record.bank]
+    given = zip(module.PARAMETERS, rows(module.PARAMETERS, p), strict=True)
+    fixed = [
+        value
+        for record, row in given
+        for value in np.broadcast_to(getattr(p, record.name), row.stop - row.start)
+    ]
     values = [*x, *u, *module.outputs(x, u, p), *module.temperatures(x, p), *fixed]
     values += [*module.elements(x, u, p)] if any("." in name for name in wanted) else []
     named = zip(_quantity_names(system), values, strict=False)

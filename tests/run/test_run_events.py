@@ -214,3 +214,15 @@ def load_text(text: str):
     from piezo_sym import Model
 
     return Model(**tomllib.loads(text))
+
+
+def test_parameters_of_banks_are_watched_lane_by_lane():
+    given = {
+        "inputs": {"V_in": sine(100.0, 100.0)},
+        "duration": 0.02,
+        "parameters": {"L": [1e-3, 2e-3]},
+    }
+    run = simulate("piezo_stack", events={"by_name": "phi_2/L_2 - i_0_2"}, **given)
+    same = simulate("piezo_stack", events={"by_number": "phi_2/(2/1000) - 1/2"}, **given)
+    assert run.by_name.size > 0
+    assert np.allclose(run.by_name, same.by_number, rtol=1e-12)
