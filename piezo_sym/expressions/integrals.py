@@ -42,8 +42,9 @@ class NoFormError(Exception):
 def by_rules(node: Expr, name: str) -> Expr:
     """Return an antiderivative of `node` by `name`.
 
-    Known forms: polynomials, also as x/(a/(1 + x**2)), and sums of c*(a*x + b)**n and c*f(a*x + b),
-    c, a, b free of x.  Raises `NoFormError` if the law has none of these forms.
+    Known forms: polynomials, also as x/(a/(1 + x**2)), and sums of c*(a*x + b)**n, n a number or a
+    law free of x, also as (c/(a*x + b))**n, and of c*f(a*x + b); c, a, b free of x.  Raises
+    `NoFormError` if the law has none of these forms.
     """
     if name not in names(node):
         return mul(node, Sym(name))
@@ -64,48 +65,64 @@ def by_rules(node: Expr, name: str) -> Expr:
             if function in {"min", "max"} and name not in names(arg):
                 arg, *rest = (*rest, arg)
             slope = None if any(name in names(w) for w in rest) else slope_of(arg, name)
-            if slope is None:
-                raise NoFormError
-            integral = rule(RECORDS[function].integral, arg, rest[0] if rest else ZERO, node)
-            return divided(integral, slope)
+            if slope is not None:
+                integral = rule(RECORDS[function].integral, arg, rest[0] if rest else ZERO, node)
+                return divided(integral, slope)
     with suppress(NoFormError):
         return _power_rule(node, name)
-    degree, raised = _degree(node, name)
-    if degree < -1 or (degree == -1 and not raised):
+    with suppress(NoFormError):
+        return _of_degree(node, name, Sym(name))
+    slopes = ((part, slope_of(part, name)) for part in walk(node) if isinstance(part, Add))
+    base = next((part for part, slope in slopes if slope), None)
+    if base is None:
         raise NoFormError
-    return div(mul(Sym(name), node), add(*raised, Num(degree + 1)))
+    return _of_degree(node, name, base)
 
 
-def _degree(node: Expr, name: str) -> tuple[Fraction, tuple[Expr, ...]]:
-    """Return n of a product c*x**n, x > 0: a number, and the terms that exponents w > 0 add to it.
+def _of_degree(node: Expr, name: str, base: Expr) -> Expr:
+    """Return the integral of a product c*b**n of powers of one base b = a*x + d.
+
+    With b' = a and w the exponent in all, (b*f)' = a*f + b*f*w*a/b = (w + 1)*a*f: it is an integral
+    for each sign of b for which the law f has a value.
+    """
+    degree, raised = _degree(node, name, base)
+    slope = slope_of(base, name)
+    if slope is None or (degree < -1 and base == Sym(name)) or (degree == -1 and not raised):
+        raise NoFormError
+    return div(divided(mul(base, node), slope), add(*raised, Num(degree + 1)))
+
+
+def _degree(node: Expr, name: str, base: Expr) -> tuple[Fraction, tuple[Expr, ...]]:
+    """Return n of a product c*b**n of a base b: a number, and the terms that names add to it.
 
     Raises `NoFormError` if it is no such product.
     """
     if name not in names(node):
         return Fraction(0), ()
+    if node == base:
+        return Fraction(1), ()
     match node:
-        case Sym():
-            return Fraction(1), ()
         case Neg(arg):
-            return _degree(arg, name)
+            return _degree(arg, name, base)
         case Mul(left, right):
-            (one, more), (two, others) = _degree(left, name), _degree(right, name)
+            (one, more), (two, others) = _degree(left, name, base), _degree(right, name, base)
             return one + two, more + others
         case Div(left, right):
-            (one, more), (two, others) = _degree(left, name), _degree(right, name)
+            (one, more), (two, others) = _degree(left, name, base), _degree(right, name, base)
             if not others:
                 return one - two, more
-        case Pow(base, exponent):
-            one, more = _degree(base, name)
+        case Pow(arg, exponent):
+            one, more = _degree(arg, name, base)
             if not more:
                 return one * exponent, ()
-        case Call(function, (arg, *rest)) if RECORDS[function].power or function == "pow":
-            one, more = _degree(arg, name)
-            if more or any(name in names(w) for w in rest):
-                raise NoFormError
-            if function == "pow":
-                return Fraction(0), (mul(Num(one), rest[0]),)
-            return one * (RECORDS[function].power or 1), ()
+        case Call("exp", (Mul(w, Call("log", (arg,))),)) | Call("pow", (arg, w)):
+            one, more = _degree(arg, name, base)
+            if not more and name not in names(w):
+                return Fraction(0), (mul(Num(one), w),)
+        case Call(function, (arg,)) if RECORDS[function].power:
+            one, more = _degree(arg, name, base)
+            if not more:
+                return one * (RECORDS[function].power or 1), ()
     raise NoFormError
 
 
@@ -194,6 +211,8 @@ def divided(top: Expr, slope: Expr) -> Expr:
     match slope:
         case Div(Num(value), bottom):
             return mul(mul(Num(1 / value), bottom), top)
+        case Neg(arg):
+            return neg(divided(top, arg))
     return div(top, slope)
 
 

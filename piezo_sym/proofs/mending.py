@@ -4,20 +4,21 @@ Input: the obligation of a refuted row, and the prover.  Output: conditions with
 A law c*f, where f takes power in, does so where c >= 0; factors of c that the domain keeps from
 being negative are left out.  A sum does so if each of its terms does: d >= 0 and d_3 >= 0 of
 d*v + d_3*v**3; terms that differ by parameters alone are one, on each branch: beta >= abs(gam) of
-beta*abs(v) + gam*v.
+beta*abs(v) + gam*v.  A factor with exp of the letter is asked for its values at 0 and far from it:
+a <= 1 of tanh(v)*(1 - a*exp(-abs(v))).  Conditions that the values of the spec satisfy come first.
 For a law that jumps, what to write instead is the same for all: `JUMPS` and `MEETS`.
 """
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache, reduce
 from itertools import combinations
 
 from piezo_sym.errors import STICKING
-from piezo_sym.expressions.calculus import add, mul, power
-from piezo_sym.expressions.exact_eval import all_hold
+from piezo_sym.expressions.calculus import add, compared, inserted, mul, power
+from piezo_sym.expressions.exact_eval import Value, all_hold
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tidying import reflected, tidied
+from piezo_sym.expressions.tidying import reflected, settled, tidied
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
@@ -102,15 +103,21 @@ def mending_conditions(
         factor = None  # the rate that drives a slip has no name in [domain]
     if factor and (said := turning([factor], iphs)):
         return said
-    ways = _ways(factor, sign, given, within)
-    conditions = next((way for way in ways if way and mended(way)), ())
+    ways = [way for way in _ways(factor, sign, given, within, shown) if way]
+    ways.sort(key=lambda way: bool(_broken(way, points)))
+    conditions = next(filter(mended, ways), ())
     for claim in conditions if len(conditions) > 1 else ():
         rest = tuple(c for c in conditions if c != claim)
         conditions = rest if rest and mended(rest) else conditions
     if not conditions:
         return _signed(sign.law, sign.letter, shown)
-    broken = [c for c in conditions for p in points if all_hold((c,), p) is False]
-    return in_words([condition_text(sided(c)) for c in conditions], broken, iphs)
+    texts = [condition_text(sided(c)) for c in conditions]
+    return in_words(texts, _broken(conditions, points), iphs)
+
+
+def _broken(conditions: Iterable[Cmp], points: Iterable[Mapping[str, Value]]) -> list[Cmp]:
+    """Return the conditions that the values of the spec do not satisfy."""
+    return [c for c in conditions if any(all_hold((c,), p) is False for p in points)]
 
 
 def signed_roots(element: str, iphs: IPHS) -> str:
@@ -147,11 +154,13 @@ def _instead(new: Expr, old: Expr) -> str:
 
 
 def _ways(
-    factor: Cmp | None, sign: SignOf, given: Collection[str], within: Within
+    factor: Cmp | None, sign: SignOf, given: Collection[str], within: Within, shown: Shown
 ) -> Iterator[tuple[Cmp, ...]]:
-    """Yield conditions that may mend a law: of its factor, of its terms, of its parameters."""
+    """Yield conditions that may mend a law: of its factors, of its terms, of its parameters."""
     if factor:
         yield from ((shortened(factor, within(())),), (factor,))
+    elif sign.letter:
+        yield _of_ends(sign.law, sign.letter, given, shown)
     yield _of_terms(sign, given, within)
     yield tuple(Cmp(">=", Sym(name), ZERO) for name in names(sign.law) if name in given)
 
@@ -168,6 +177,26 @@ def _of_factor(law: Expr, letter: str, shown: Shown) -> Cmp | None:
         return None
     kept = [f for f in factors if f not in rest and not shown(f, "")]
     return Cmp(">=", reduce(mul, kept), ZERO) if any(map(names, kept)) else None
+
+
+def _of_ends(law: Expr, letter: str, given: Collection[str], shown: Shown) -> tuple[Cmp, ...]:
+    """Return conditions on `given` names under which a factor is >= 0 at its ends.
+
+    With exp of the letter, which is 1 at 0 and 0 far from it, that may be all that it needs.
+    """
+    factors = list(sign_factors(law))
+    for n, factor in enumerate(factors):
+        others = [*factors[:n], *factors[n + 1 :]]
+        moving = [f for f in others if letter in names(f)]
+        bells = [e for e in walk(factor) if isinstance(e, Call) and e.function == "exp"]
+        if bells and moving and shown(reduce(mul, moving), letter):
+            ends = (replaced(factor, dict.fromkeys(bells, e)) for e in (ONE, ZERO))
+            ends = (settled(inserted(compared(e), {letter: ZERO}), ()) for e in ends)
+            fixed = (f for f in others if f not in moving)
+            asked = dict.fromkeys(tidied(f) for f in (*ends, *fixed) if not shown(f, ""))
+            found = tuple(Cmp(">=", f, ZERO) for f in asked)
+            return found if all({*names(f)} <= {*given} for f in asked) else ()
+    return ()
 
 
 def _of_terms(sign: SignOf, fixed: Collection[str], within: Within) -> tuple[Cmp, ...]:

@@ -5,12 +5,13 @@ zero, every question answered with `unsat`, and every row it rests on PROVED.  R
 witness that was evaluated exactly in the law itself.  All else is OPEN, with the reason.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import product
 
 import sympy as sp
 
+from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import DomainOracle, moved_counterexample, simple_counterexample
@@ -254,9 +255,21 @@ def _mended_by(found: Finding, obligation: Obligation, iphs: IPHS, solver: Solve
         )
     if refuted and obligation.id == "welldef":
         conditions = signed_roots(obligation.element, iphs)
+    if refuted and obligation.id == "odd":
+        conditions = _held(found.witness or {}, obligation.element, iphs)
     if found.remedy or (refuted and obligation.id in DECLARED):
         conditions += _domain_conditions(obligation, iphs, solver)
     return conditions or (f"; {found.remedy}" if found.remedy else "")
+
+
+def _held(witness: Mapping[str, str], element: str, iphs: IPHS) -> str:
+    """Return that states that drive a letter were held while its sign changed, or ''."""
+    for tie in drive_of(iphs, element):
+        driving = {slot.label for slot in iphs.system.states} & {*names(tie.right)}
+        if held := [name for name in witness if name in driving]:
+            said = f"{' and '.join(held)} {'were' if len(held) > 1 else 'was'} held"
+            return f"; {said} while {spell(tie.left)} = {spell(tie.right)} changed its sign"
+    return ""
 
 
 def _domain_conditions(obligation: Obligation, iphs: IPHS, solver: SolverLike) -> str:

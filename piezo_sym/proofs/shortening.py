@@ -15,6 +15,8 @@ from piezo_sym.proofs.signs.reduce import Positive, Setting, factored
 
 #: Functions that are positive wherever they have a value.
 ABOVE = frozenset({"exp", "cosh"})
+#: What a comparison is with its sides exchanged.
+TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "!=": "!="}
 #: A product: its number, and the exponent of each other factor.
 Factors = tuple[Fraction, dict[Expr, Fraction]]
 
@@ -40,12 +42,14 @@ def shortened(claim: Cmp, positive: Positive) -> Cmp:
 
 
 def sided(condition: Cmp) -> Cmp:
-    """Return a comparison of a sum with zero with what is subtracted on the right: n > 1."""
+    """Return a comparison of a sum with zero as n > 1, or a <= 1: names on the left."""
     if condition.right != ZERO or not isinstance(condition.left, Add):
         return condition
     terms = condition.left.terms
     less = [neg(t) for t in terms if isinstance(t, Neg) or (isinstance(t, Num) and t.value < 0)]
     more = [t for t in terms if neg(t) not in less]
+    if len(more) == 1 and isinstance(more[0], Num):
+        return Cmp(TURNED[condition.op], add(*less), more[0])
     return Cmp(condition.op, add(*more), add(*less)) if more else condition
 
 

@@ -4,7 +4,8 @@ Input: values.  Output: values.  What a function needs of its argument is noted 
 Identities used, and their premises:
 exp(a + b) = exp(a) exp(b); exp(c log x) = x**c (of `raised` 0 where x = 0); log(exp z) = z;
 log(c + c exp(2 z)) = log(2 c) + z + log(cosh z) for c > 0 (`by_cosh`);
-log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0; (x**(1/n))**n = x for x >= 0;
+log(a b) = log a + log b and (a b)**c = a**c b**c for a, b > 0, and log(a b) = log(-a) + log(-b)
+for a, b < 0; (x**(1/n))**n = x for x >= 0;
 (x**2)**(1/2) = abs(x); f(-x) = -f(x) or f(x) where a record says that f is odd or even.
 """
 
@@ -16,7 +17,7 @@ from sympy import factorint
 
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.translation.field import Exponent, GeneratorField, Need, NotShownError, Value
-from piezo_sym.translation.signs import compare, factors, lifted, primitive, side_of, sign, sign_of
+from piezo_sym.translation.signs import compare, factors, lifted, primitive, side_of, sign
 
 MOST_FACTOR = 10**12
 
@@ -57,7 +58,7 @@ def divisors(field: GeneratorField, g: int) -> Iterator[Value]:
     """Yield what must not be zero where a generator divides: for a letter what it stands for."""
     gen = field.gens[g]
     if gen.kind != "letter" or gen.arg is None:
-        yield (gen.kind == "power" and gen.arg) or field.raised(g, 1)
+        yield _base(field, g)
         return
     _, common, rest = primitive(gen.arg, partly=False)
     for other, _ in common:
@@ -148,16 +149,40 @@ def _log(arg: Value) -> Value:
 
 
 def _log_of_product(arg: Value) -> Value:
-    field, ((mono, c), *more) = arg.field, arg.terms.items()
-    if more or c <= 0 or any(sign_of(field, g) < 2 for g, _ in mono):
+    """Return the sum of the logarithms of factors of known signs; else a logarithm of the product.
+
+    Of a factor a < 0, with a whole exponent e, it is that of -a > 0: a**e = (-1)**e (-a)**e.  If
+    the number, with these signs, is not positive, the domain does not keep the product above 0.
+    """
+    field, logs = arg.field, list[Value]()
+    number, common, rest = primitive(arg, partly=False)
+    others = [(rest, 1)] if rest != field.one else []
+    for base, e in (*((_base(field, g), e) for g, e in common), *others):
+        above = base if sign(base) == 2 else -base
+        if not base.terms or sign(above) < 2 or (above != base and Fraction(e).denominator != 1):
+            return field.generator("log", arg)
+        number = -number if above != base and e % 2 else number
+        logs.append(_log_of_positive(above) * field.number(e))
+    if number <= 0:
         return field.generator("log", arg)
-    whole = ((Fraction(c).numerator, 1), (Fraction(c).denominator, -1))
-    parts = [field.generator("log", field.number(n)) * field.number(s) for n, s in whole if n != 1]
-    for g, e in mono:
-        gen = field.gens[g]
-        log = gen.arg if gen.kind == "exp" else field.generator("log", field.raised(g, 1))
-        parts += [log * field.number(e)] if log else []
-    return field.total(parts)
+    whole = ((number.numerator, 1), (number.denominator, -1))
+    logs += [field.generator("log", field.number(n)) * field.number(s) for n, s in whole if n != 1]
+    return field.total(logs)
+
+
+def _base(field: GeneratorField, g: int) -> Value:
+    """Return what a generator is: for a power of a sum that sum, which is in normal form."""
+    gen = field.gens[g]
+    return gen.arg if gen.kind == "power" and gen.arg else field.raised(g, 1)
+
+
+def _log_of_positive(base: Value) -> Value:
+    """Return the logarithm of a value; log(exp z) = z."""
+    field = base.field
+    for gen in map(field.gens.__getitem__, base.generators()):
+        if gen.kind == "exp" and gen.arg and base == field.generator("exp", gen.arg):
+            return gen.arg
+    return field.generator("log", base)
 
 
 def by_cosh(arg: Value) -> Value | None:

@@ -172,6 +172,13 @@ def test_a_law_that_is_not_odd_is_no_fault():
     report.raise_if_not_proved()
 
 
+def test_a_law_of_the_state_that_drives_it_is_told_that_it_was_held():
+    odd = row(changed(('"d*v"', '"d*p/M"')), "odd", "damper")
+    assert odd.verdict is Verdict.REFUTED
+    assert odd.reason.endswith("; p was held while v = p/M changed its sign")
+    assert "held" not in row(changed(('"d*v"', '"d*v**2"')), "odd", "damper").reason
+
+
 def test_everything_of_the_paper_is_proved():
     rows = decide(derive(load("piezo_stack"))).rows
     assert {r.verdict for r in rows} == {Verdict.PROVED}

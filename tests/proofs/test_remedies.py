@@ -246,6 +246,21 @@ def test_of_conditions_that_the_values_break_that_is_said():
         assert row.reason.endswith(said)
 
 
+STRIBECK = ("R*i*(1 - n*exp(-(i/i_s)**2))", "R*i_s*tanh(i/i_s)*(1 - n*exp(-abs(i)/i_s))")
+
+
+@pytest.mark.some(1)
+@pytest.mark.parametrize("law", STRIBECK)
+def test_conditions_that_the_values_satisfy_are_said_rather_than_others(law):
+    """It said -R*n >= 0, of the sum of two terms; n = 1 satisfies n <= 1."""
+    text = SPEC.replace("[inputs]", 'n = { value = 1.0, unit = "1" }\n[inputs]')
+    text = assuming(text, '"i_s > 0", "n <= MOST"')
+    text = text.replace('"R*i"', f'"{law}"')
+    (row,) = (row for row in unproved(text.replace("MOST", "1.01")) if row.id == "passive")
+    assert row.reason.endswith("; the condition 'n <= 1' in [domain] mends it")
+    assert not unproved(text.replace("MOST", "1"))
+
+
 @pytest.mark.parametrize(
     ("temperature", "known"),
     [("T_0*(1 - S/c)", "T > 0"), ("T_0*(2 + S/c) if S > 0 else T_0*exp(S/c)", "c > 0")],

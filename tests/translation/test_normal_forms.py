@@ -15,6 +15,7 @@ from piezo_sym.translation.change import put, spelled
 from piezo_sym.translation.expressions import PLAIN, Expressions
 from piezo_sym.translation.field import GeneratorField, NotShownError, Value
 from piezo_sym.translation.numerator import vanishes, vanishes_with
+from piezo_sym.translation.signs import assume as known_positive
 from piezo_sym.translation.witness import UNDECIDED, WitnessPoint
 from piezo_sym.translation.zero import is_zero
 
@@ -210,3 +211,26 @@ def test_the_energy_of_a_tanh_without_overflow_is_the_logarithm_of_cosh(text, sa
     trees = [ast.parse(t, mode="eval").body for t in (text, "log(cosh(x))")]
     sides = [[number(t, {"x": x, "y": 1.0}) for x in (-2.0, -0.3, 0.4, 3.0)] for t in trees]
     assert (sides[0] == pytest.approx(sides[1], rel=1e-12)) == same
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [
+        ("log(a/(a - x))", "log(a) - log(a - x)", True),
+        ("log((x - a)/(y - a))", "log(a - x) - log(a - y)", True),
+        ("log(1 - x/a)", "log(2*a - 2*x) - log(2*a)", True),
+        ("log(x/(x - 2*a))", "log(x) - log(x - 2*a)", False),  # at 0 < x < a neither has a value
+        ("log(x/(x - 2*a))", "log(x) - log(2*a - x)", False),
+        ("log(x/y)", "log(x) - log(y)", False),
+        ("log(x**2)", "2*log(x)", False),
+        ("log((x - a)*x)", "log(x - a) + log(x)", False),
+        ("log(a/(a - x))", "log(a) + log(a - x)", False),
+        ("log((x - a)**3*y)", "3*log(a - x) + log(y)", False),
+    ],
+)
+def test_a_logarithm_is_split_only_where_the_domain_gives_each_factor_a_sign(one, other, same):
+    _, read = reader()
+    for margin in ("a - x", "a - y"):
+        known_positive(read(ast.parse(margin, mode="eval").body)[0], 2)
+    value, split = (read.numeric(ast.parse(text, mode="eval").body)[0] for text in (one, other))
+    assert is_zero(value - split) == same

@@ -168,3 +168,56 @@ def test_a_long_condition_of_a_bank_is_printed_as_its_least_lane():
     iphs = derive(model)
     (row,) = rows(iphs, printed(iphs))
     assert row.verdict is Verdict.PROVED, row.reason
+
+
+STORE = """
+[model]
+name = "store"
+[parameters]
+a = {{ value = 0.3, unit = "{unit}" }}
+b = {{ value = 0.1, unit = "{unit}" }}
+F = {{ value = 0.3, unit = "{output}" }}
+M = {{ value = 2.0, unit = "{inert}" }}
+n = {{ value = 1.4, unit = "1" }}
+[domain]
+assume = ["M > 0", "a > 0", "b > 0", "x < a", "x > -a", "n > 1"]
+[elements]
+store = {{ kind = "{kind}", between = ["p", "{ground}"], {output_of} = "{law}", state = "x" }}
+other = {{ {other}, state = "y" }}
+"""
+STORES = [
+    ("spring", "m", "N", "kg", "wall", "force", "q", 'kind = "mass", at = "p", mass = "M"'),
+    (
+        *("accumulator", "m**3", "Pa", "Pa*s**2/m**3", "tank", "pressure", "V"),
+        'kind = "inertance", between = ["p", "tank"], inertance = "M"',
+    ),
+    (
+        *("capacitor", "C", "V", "H", "gnd", "voltage", "Q"),
+        'kind = "inductor", between = ["p", "gnd"], inductance = "M"',
+    ),
+]
+
+
+def stored(store, law):
+    kind, unit, output, inert, ground, output_of, letter, other = store
+    law = law.replace("z", letter)
+    words = {"unit": unit, "output": output, "inert": inert, "ground": ground, "other": other}
+    return derive(parse(STORE.format(kind=kind, output_of=output_of, law=law, **words)))
+
+
+@pytest.mark.parametrize("store", STORES, ids=lambda store: store[0])
+@pytest.mark.parametrize(
+    ("law", "near"),
+    [
+        ("F*((a/(a - z))**n)", "F*((a/(a + z))**n)"),
+        ("F*((a + b)/(a - z))**n", "F*((a + 2*b)/(a - z))**n"),
+        ("F*((a/(a - z))**n - (a/(a + z))**n)", "F*((a/(a - z))**n + (a/(a + z))**n)"),
+        ("F*(a/(a - z))**(7/5)", "F*(a/(a - z))**(8/5)"),
+    ],
+)
+def test_a_store_of_powers_of_quotients_is_proved_and_another_is_not(store, law, near):
+    iphs = stored(store, law)
+    (found,) = rows(iphs, printed(iphs))
+    assert found.verdict is Verdict.PROVED
+    (found,) = rows(iphs, printed(stored(store, near)))
+    assert found.verdict is not Verdict.PROVED
