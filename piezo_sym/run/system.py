@@ -52,8 +52,8 @@ class DrivenModule:
     def noise(self, x: FloatArray, largest: FloatArray) -> FloatArray:
         """Return how far round-off of temperatures and states moves each state (n,) near x (n,).
 
-        At rest a state is nothing else: no step resolves it. A rate's round-off moves the state for
-        about as long as the state's own motion takes, or its exchange with another state.
+        No step resolves less; at rest a state is nothing else. Round-off of a rate moves the state
+        for as long as the state's own motion takes, its exchange with another state, or the run.
         """
         if x.size > MOST_QUIET:
             return np.zeros(x.size)
@@ -65,7 +65,7 @@ class DrivenModule:
             rise = np.abs(self.module.temperatures(x[:, None] + np.diag(step), self.parameters) - T)
             sizes = np.nan_to_num(np.min(T * step / rise, axis=0, initial=np.inf), posinf=0.0)
             sizes = np.maximum(sizes, largest)
-            pace = np.max(np.sqrt(slope * slope.T), axis=1)
+            pace = np.maximum(np.max(np.sqrt(slope * slope.T), axis=1), 1.0 / self.inputs.duration)
             for _ in range(CHAIN):
                 moved = (slope - np.diag(np.diag(slope))) @ sizes / pace
                 sizes = np.maximum(sizes, np.nan_to_num(moved, posinf=0.0))

@@ -71,7 +71,10 @@ def together(faults: Iterable[SpecError]) -> SpecError:
 
 @contextmanager
 def all_faults() -> Iterator[Callable[[], AbstractContextManager[None]]]:
-    """Raise errors together at the end; in what is yielded each is kept, one about each thing."""
+    """Raise errors together at the end: a `with` of what is yielded keeps its error until then.
+
+    Of errors that say the same, as of one unknown word in two laws, the first is kept.
+    """
     faults: dict[str, SpecError] = {}
 
     @contextmanager

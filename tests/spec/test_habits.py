@@ -84,9 +84,10 @@ def test_a_component_without_its_ending_is_found(tmp_path):
 def test_the_list_of_kinds_shows_a_bank_of_cells(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert run(["new", "made"]) == run(["kinds"]) == 0
-    cells = capsys.readouterr().out.partition("[banks.creep]")
+    said, head = capsys.readouterr().out, "[banks.creep]"
+    cells = said[said.index(head) :].partition("\n\n")[0]
     text = (tmp_path / "made.toml").read_text(encoding="utf-8")
-    assert parse(text + "".join(cells[1:])).banks["creep"].count == 3
+    assert parse(text + cells).banks["creep"].count == 3
 
 
 def test_a_choice_in_a_condition_has_a_comparison_of_its_own():

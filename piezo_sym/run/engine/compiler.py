@@ -138,7 +138,7 @@ def _call(seconds: float, *commands: Sequence[str]) -> list[subprocess.Completed
                     running.append(stack.enter_context(_started(words)))
                 said = [process.communicate(timeout=seconds) for process in running]
             except BaseException:  # it takes too long, or Ctrl-C: its children hold the pipes, too
-                for process in running:
+                for process in (one for one in running if one.returncode is None):
                     with suppress(ProcessLookupError):
                         os.killpg(process.pid, signal.SIGKILL)
                 raise

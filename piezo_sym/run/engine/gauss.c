@@ -80,7 +80,8 @@ typedef struct {
 #endif /* BENDS */
 #if defined(COSTATES) /* see residual.c */
     real *costate, *integrand; /* at a point */
-    real *term;                /* n: how large the terms of each rate are */
+    real *rate_noise, *kept;   /* n: the round-off of each rate; `kept_size`: what is put aside to find it */
+    size_t kept_size;
     real taken, scale;         /* entropy that the first body takes; factor on what processes book */
     mask loose, early;         /* lanes that may stop short of round-off; lanes that did */
     double allowed;            /* in units of noise: how far from their root they may be */
@@ -195,6 +196,9 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(largest, n);
     PLACE(noise, n);
     PLACE(reached, n);
+#if defined(COSTATES)
+    const long from = at; /* what a point writes lies from here */
+#endif /* COSTATES */
     PLACE(gap, STAGES * n);
     PLACE(prior, STAGES * n);
     PLACE(node, FINE * m->means + m->given - m->means);
@@ -202,6 +206,9 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(side, STAGES * m->branches);
     PLACE(margin, STAGES * MODEL(limits));
     PLACE(rows, STAGES * m->booked);
+#if defined(COSTATES)
+    const long until = at; /* to here */
+#endif /* COSTATES */
     PLACE(slope, m->slopes);
 #if defined(PATHS)
     PLACE(path, PARAMETERS * paths);
@@ -211,7 +218,9 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
 #if defined(COSTATES)
     PLACE(costate, n);
     PLACE(integrand, m->given);
-    PLACE(term, n);
+    PLACE(rate_noise, n);
+    PLACE(kept, until - from);
+    m->kept_size = (size_t)(until - from) * sizeof(real);
 #endif /* COSTATES */
     m->fresh = m->slope; /* of one run there is no lane that keeps its slopes */
     if (REAL_WIDTH > 1)

@@ -45,8 +45,9 @@ static void MODEL(keep_after)(MODEL(batch) *b, const MODEL(lane) *l, int lane, d
 }
 
 /*
- * Learn how long after the switch before it the switch at which a step ended comes, and which it is. Rows of
- * `interval` are switches to either side. An interval that differs from the one before it is kept as negative.
+ * Learn how long after the switch before it the switch at which a step ended comes, and which it is. A function
+ * has two rows of `interval`, by its sign at the step's begin. An interval that differs from the one before it
+ * is kept as negative: no switch is expected by it, but the next interval is compared with it.
  */
 static void MODEL(learn_interval)(MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
@@ -63,7 +64,7 @@ static void MODEL(learn_interval)(MODEL(batch) *b, MODEL(lane) *l, int lane)
 /* Where no switch is seen ahead, one is expected when it came the last times. */
 static void MODEL(expect_switch)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
-    if (l->goal >= 0 || l->passing < 0)
+    if (l->goal >= 0 || l->passing < 0 || IN(b->m.over, lane))
         return;
     const double ahead = l->passed + LANE(b->interval, l->passing, lane) - l->t;
     if (ahead > 0.0) {

@@ -238,7 +238,7 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
 }
 
 #if defined(COSTATES)
-/* The lanes whose last changes are the round-off of rates; see residual.c. */
+/* The lanes whose last changes are the round-off of rates; see nodes.c. */
 static mask MODEL(is_round_off)(MODEL(block) *m, real h, mask where);
 #endif /* COSTATES */
 

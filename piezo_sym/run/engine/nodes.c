@@ -12,6 +12,7 @@
 #define FARTHEST (sizeof(real) < sizeof(double) ? 1e-4 : 1e-8)
 #define FARTHER 1.6
 #define ROUND_OFF_IN_IT 8.0 /* how often a fourth difference has that of a single value */
+static const double binomial[] = {1.0, -4.0, 6.0, -4.0, 1.0};
 #define MUCH_NOISE 100.0
 /* A relative bound, but not below the round-off of sums over nodes. */
 #define ABOVE_NOISE(part) ((part) > MUCH_NOISE * NOISE ? (part) : MUCH_NOISE * NOISE)
@@ -87,13 +88,19 @@ static mask MODEL(coarse)(const MODEL(block) *m, real h)
     return MODEL(rough)(m, &MODEL(few), NULL);
 }
 
-/* The integrands of the means, with each state moved away from zero by a fraction of its scale. */
-static void MODEL(integrands_aside)(const MODEL(block) *m, double fraction, real *value)
+/* Move each state away from zero by a fraction of its scale: in m->reached. */
+static void MODEL(move_aside)(const MODEL(block) *m, double fraction)
 {
     for (long k = 0; k < m->n; ++k) {
         const real by = fraction * (m->largest[k] + size_of(m->x[k]));
         m->reached[k] = m->x[k] + chosen(m->x[k] < 0.0, -by, by);
     }
+}
+
+/* The integrands of the means there. */
+static void MODEL(integrands_aside)(const MODEL(block) *m, double fraction, real *value)
+{
+    MODEL(move_aside)(m, fraction);
     MODEL(integrands)(m->reached, &m->p, value);
 }
 
@@ -112,7 +119,6 @@ static void MODEL(find_noise)(const MODEL(block) *m, real *noise)
         const real change = size_of(second[k] - first[k]);
         noise[k] = chosen(change < 1e300, (NOISE / ASIDE) * change, zero);
     }
-    static const double binomial[] = {1.0, -4.0, 6.0, -4.0, 1.0};
     for (double apart = NEAREST; apart < FARTHEST; apart *= FARTHER) {
         real *const sum = second + m->means;
         for (long k = 0; k < m->means; ++k)
@@ -139,6 +145,101 @@ static mask MODEL(too_coarse)(const MODEL(block) *m, real h)
     MODEL(find_noise)(m, noise);
     return bad & MODEL(rough_parts)(m, h, &MODEL(many), noise);
 }
+
+#if defined(COSTATES)
+/* How far states are moved to learn how large the terms of rates are, relative to their scale. */
+#define APART 1e-6
+/* Changes may be this many times the round-off of a rate, which there is in each stage. */
+#define ROUND_OFFS 100.0
+
+/* The rates where states were moved to, in `gap`. */
+static void MODEL(rates_aside)(const MODEL(block) *m)
+{
+    MODEL(at_point)(m, m->reached, m->branch, m->u, NULL, m->gap, m->rows, m->side, m->margin);
+}
+
+/*
+ * The round-off of rates by the size of their terms, which shows when states are moved to either side. As all
+ * at once would leave a balance as it is, state k goes the way that a binary digit of k says: any two go
+ * opposite ways for one digit at least. (A single state has one digit, too.)
+ */
+static void MODEL(noise_of_terms)(const MODEL(block) *m)
+{
+    const long n = m->n;
+    real *const slope = m->costate;
+    memset(m->rate_noise, 0, (size_t)n * sizeof(real));
+    for (long digit = 1; digit < 2 * n; digit *= 2) {
+        memset(slope, 0, (size_t)n * sizeof(real));
+        for (double side = -1.0; side < 2.0; side += 2.0) {
+            for (long k = 0; k < n; ++k) {
+                const double by = k & digit ? side * APART : -side * APART;
+                m->reached[k] = m->x[k] + by * largest_of(m->largest[k], size_of(m->x[k]));
+            }
+            MODEL(rates_aside)(m);
+            for (long k = 0; k < n; ++k)
+                slope[k] += (side / (2.0 * APART)) * m->gap[k];
+        }
+        for (long k = 0; k < n; ++k) {
+            const real noise = NOISE * size_of(slope[k]);
+            m->rate_noise[k] = chosen(noise < 1e300, largest_of(noise, m->rate_noise[k]), m->rate_noise[k]);
+        }
+    }
+}
+
+/* The same by fourth differences, for terms that have nothing to do with the states' scales, as in `find_noise`. */
+static void MODEL(noise_of_differences)(const MODEL(block) *m)
+{
+    const long n = m->n;
+    real *const sum = m->costate;
+    for (double apart = NEAREST; apart < FARTHEST; apart *= FARTHER) {
+        memset(sum, 0, (size_t)n * sizeof(real));
+        for (int point = 0; point < 5; ++point) {
+            MODEL(move_aside)(m, point * apart);
+            MODEL(rates_aside)(m);
+            for (long k = 0; k < n; ++k)
+                sum[k] += binomial[point] * m->gap[k];
+        }
+        for (long k = 0; k < n; ++k) {
+            const real noise = size_of(sum[k]) / ROUND_OFF_IN_IT;
+            m->rate_noise[k] = chosen(noise < 1e300, largest_of(noise, m->rate_noise[k]), m->rate_noise[k]);
+        }
+    }
+}
+
+/* The lanes whose last changes are as small as the round-off of rates. */
+static mask MODEL(below_noise)(const MODEL(block) *m, real h, mask where)
+{
+    real worst = zero;
+    for (long k = 0; k < m->n; ++k) {
+        real sum = zero;
+        for (long j = 0; j < STAGES; ++j)
+            sum += size_of(m->prior[j * m->n + k]);
+        const real size = m->noise[k] + NOISE * (m->largest[k] + size_of(m->x[k])) + h * m->rate_noise[k];
+        worst = largest_of(h * sum / (size + NO_SIZE), worst);
+    }
+    return where & (worst <= ROUND_OFFS);
+}
+
+/*
+ * The lanes whose last changes are no more than the round-off of rates. These may be the small difference of
+ * large terms, as the force at rest is. Residuals, branches and rows of the step are put aside meanwhile.
+ */
+static mask MODEL(is_round_off)(MODEL(block) *m, real h, mask where)
+{
+    memcpy(m->kept, m->gap, m->kept_size);
+    MODEL(noise_of_terms)(m);
+    mask found = MODEL(below_noise)(m, h, where);
+    if (any(where & none_of(found))) {
+        MODEL(noise_of_differences)(m);
+        found = MODEL(below_noise)(m, h, where);
+    }
+    memcpy(m->gap, m->kept, m->kept_size);
+#if defined(PATHS)
+    MODEL(path_parameters)(m->x, &m->p, m->path);
+#endif /* PATHS */
+    return found;
+}
+#endif /* COSTATES */
 
 #if !defined(COSTATES) /* else see residual.c */
 static mask MODEL(iterate_enough)(MODEL(block) *m, real h, mask where)

@@ -88,52 +88,6 @@ static void MODEL(add_residual)(const MODEL(block) *m, real *end, real *booked)
         rows[k] *= m->scale;
 }
 
-/* How far states are moved to learn how large the terms of rates are, relative to their scale. */
-#define APART 1e-6
-/* Changes may be this many times the round-off of one term: there are several, in each stage. */
-#define ROUND_OFFS 100.0
-
-/*
- * The lanes whose last changes are no more than the round-off of rates. These may be the small difference of
- * large terms, as the force at rest is. How large the terms are shows when states are moved to either side:
- * state k by the sign of a digit of k, as all at once would leave the balance at rest as it is.
- */
-static mask MODEL(is_round_off)(MODEL(block) *m, real h, mask where)
-{
-    const long n = m->n;
-    real *const aside = m->reached, *const rate = m->gap;
-    real worst = zero;
-    memset(m->term, 0, (size_t)n * sizeof(real));
-    for (long digit = 1; digit < 2 * n; digit *= 2) {
-        memset(m->costate, 0, (size_t)n * sizeof(real));
-        for (double side = -1.0; side < 2.0; side += 2.0) {
-            for (long k = 0; k < n; ++k) {
-                const double by = k & digit ? side * APART : -side * APART;
-                aside[k] = m->x[k] + by * largest_of(m->largest[k], size_of(m->x[k]));
-            }
-            MODEL(at_point)(m, aside, m->branch, m->u, NULL, rate, m->rows, m->side, m->margin);
-            for (long k = 0; k < n; ++k)
-                m->costate[k] += (side / (2.0 * APART)) * rate[k];
-        }
-        for (long k = 0; k < n; ++k) {
-            const real size = size_of(m->costate[k]);
-            m->term[k] = chosen(size < 1e300, largest_of(size, m->term[k]), m->term[k]);
-        }
-    }
-    for (long k = 0; k < n; ++k) {
-        real sum = zero;
-        for (long j = 0; j < STAGES; ++j)
-            sum += size_of(m->prior[j * n + k]);
-        const real size = m->noise[k] + NOISE * (m->largest[k] + size_of(m->x[k]) + h * m->term[k]) + NO_SIZE;
-        worst = largest_of(h * sum / size, worst);
-    }
-#if defined(PATHS)
-    MODEL(path_parameters)(m->x, &m->p, m->path);
-#endif /* PATHS */
-    MODEL(gaps)(m, h, where); /* as before */
-    return where & (worst <= ROUND_OFFS);
-}
-
 /* Solve for the rates in some lanes, to round-off where residuals cannot become heat. */
 static mask MODEL(iterate_enough)(MODEL(block) *m, real h, mask where)
 {

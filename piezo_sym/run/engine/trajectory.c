@@ -123,7 +123,7 @@ enum { TRIED = 32, AGAIN = 12 };
 /*
  * A step may end somewhat beyond its switch, where no stage lies: BEHIND is the longest such part. That
  * adds at most KINK_ERROR of the tolerance to its error, by the rates on both sides. Such errors have one sign
- * and add up, so that they become smaller as a run has passed more switches than MANY_KINKS.
+ * and add up: they are half as large behind MANY_KINKS switches, and fall with the number of switches.
  */
 #define BEHIND (0.99 * (1.0 - stage_at[STAGES - 1]) < 0.05 ? 0.99 * (1.0 - stage_at[STAGES - 1]) : 0.05)
 #define KINK_ERROR 0.1
