@@ -1121,7 +1121,6 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
 #define FARTHEST (sizeof(real) < sizeof(double) ? 1e-4 : 1e-8)
 #define FARTHER 1.6
 #define ROUND_OFF_IN_IT 8.0 /* how often a fourth difference has that of a single value */
-static const double binomial[] = {1.0, -4.0, 6.0, -4.0, 1.0};
 #define MUCH_NOISE 100.0
 /* A relative bound, but not below the round-off of sums over nodes. */
 #define ABOVE_NOISE(part) ((part) > MUCH_NOISE * NOISE ? (part) : MUCH_NOISE * NOISE)
@@ -1183,19 +1182,13 @@ static mask MODEL(coarse)(const MODEL(block) *m, real h)
     return MODEL(rough)(m, &MODEL(few), NULL);
 }
 
-/* Move each state away from zero by a fraction of its scale: in m->reached. */
-static void MODEL(move_aside)(const MODEL(block) *m, double fraction)
+/* The integrands of the means, with each state moved away from zero by a fraction of its scale. */
+static void MODEL(integrands_aside)(const MODEL(block) *m, double fraction, real *value)
 {
     for (long k = 0; k < m->n; ++k) {
         const real by = fraction * (m->largest[k] + size_of(m->x[k]));
         m->reached[k] = m->x[k] + chosen(m->x[k] < 0.0, -by, by);
     }
-}
-
-/* The integrands of the means there. */
-static void MODEL(integrands_aside)(const MODEL(block) *m, double fraction, real *value)
-{
-    MODEL(move_aside)(m, fraction);
     MODEL(integrands)(m->reached, &m->p, value);
 }
 
@@ -1214,6 +1207,7 @@ static void MODEL(find_noise)(const MODEL(block) *m, real *noise)
         const real change = size_of(second[k] - first[k]);
         noise[k] = chosen(change < 1e300, (NOISE / ASIDE) * change, zero);
     }
+    static const double binomial[] = {1.0, -4.0, 6.0, -4.0, 1.0};
     for (double apart = NEAREST; apart < FARTHEST; apart *= FARTHER) {
         real *const sum = second + m->means;
         for (long k = 0; k < m->means; ++k)

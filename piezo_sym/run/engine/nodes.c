@@ -12,7 +12,6 @@
 #define FARTHEST (sizeof(real) < sizeof(double) ? 1e-4 : 1e-8)
 #define FARTHER 1.6
 #define ROUND_OFF_IN_IT 8.0 /* how often a fourth difference has that of a single value */
-static const double binomial[] = {1.0, -4.0, 6.0, -4.0, 1.0};
 #define MUCH_NOISE 100.0
 /* A relative bound, but not below the round-off of sums over nodes. */
 #define ABOVE_NOISE(part) ((part) > MUCH_NOISE * NOISE ? (part) : MUCH_NOISE * NOISE)
@@ -88,19 +87,13 @@ static mask MODEL(coarse)(const MODEL(block) *m, real h)
     return MODEL(rough)(m, &MODEL(few), NULL);
 }
 
-/* Move each state away from zero by a fraction of its scale: in m->reached. */
-static void MODEL(move_aside)(const MODEL(block) *m, double fraction)
+/* The integrands of the means, with each state moved away from zero by a fraction of its scale. */
+static void MODEL(integrands_aside)(const MODEL(block) *m, double fraction, real *value)
 {
     for (long k = 0; k < m->n; ++k) {
         const real by = fraction * (m->largest[k] + size_of(m->x[k]));
         m->reached[k] = m->x[k] + chosen(m->x[k] < 0.0, -by, by);
     }
-}
-
-/* The integrands of the means there. */
-static void MODEL(integrands_aside)(const MODEL(block) *m, double fraction, real *value)
-{
-    MODEL(move_aside)(m, fraction);
     MODEL(integrands)(m->reached, &m->p, value);
 }
 
@@ -119,6 +112,7 @@ static void MODEL(find_noise)(const MODEL(block) *m, real *noise)
         const real change = size_of(second[k] - first[k]);
         noise[k] = chosen(change < 1e300, (NOISE / ASIDE) * change, zero);
     }
+    static const double binomial[] = {1.0, -4.0, 6.0, -4.0, 1.0};
     for (double apart = NEAREST; apart < FARTHEST; apart *= FARTHER) {
         real *const sum = second + m->means;
         for (long k = 0; k < m->means; ++k)
@@ -186,26 +180,6 @@ static void MODEL(noise_of_terms)(const MODEL(block) *m)
     }
 }
 
-/* The same by fourth differences, for terms that have nothing to do with the states' scales, as in `find_noise`. */
-static void MODEL(noise_of_differences)(const MODEL(block) *m)
-{
-    const long n = m->n;
-    real *const sum = m->costate;
-    for (double apart = NEAREST; apart < FARTHEST; apart *= FARTHER) {
-        memset(sum, 0, (size_t)n * sizeof(real));
-        for (int point = 0; point < 5; ++point) {
-            MODEL(move_aside)(m, point * apart);
-            MODEL(rates_aside)(m);
-            for (long k = 0; k < n; ++k)
-                sum[k] += binomial[point] * m->gap[k];
-        }
-        for (long k = 0; k < n; ++k) {
-            const real noise = size_of(sum[k]) / ROUND_OFF_IN_IT;
-            m->rate_noise[k] = chosen(noise < 1e300, largest_of(noise, m->rate_noise[k]), m->rate_noise[k]);
-        }
-    }
-}
-
 /* The lanes whose last changes are as small as the round-off of rates. */
 static mask MODEL(below_noise)(const MODEL(block) *m, real h, mask where)
 {
@@ -228,11 +202,7 @@ static mask MODEL(is_round_off)(MODEL(block) *m, real h, mask where)
 {
     memcpy(m->kept, m->gap, m->kept_size);
     MODEL(noise_of_terms)(m);
-    mask found = MODEL(below_noise)(m, h, where);
-    if (any(where & none_of(found))) {
-        MODEL(noise_of_differences)(m);
-        found = MODEL(below_noise)(m, h, where);
-    }
+    const mask found = MODEL(below_noise)(m, h, where);
     memcpy(m->gap, m->kept, m->kept_size);
 #if defined(PATHS)
     MODEL(path_parameters)(m->x, &m->p, m->path);
