@@ -27,7 +27,7 @@ def taped(spec, duration, rtol=1e-8, step=None, stages=None, scale=None, quiet=F
     how = Stepping(stages or 3, 1.0, step, step, fixed=step) if step else None
     how = how or stepping(system, rtol, stages)
     engine, inputs = engine_of(system.module), system.inputs
-    noise = system.noise(x) if quiet else 0.0
+    noise = system.noise(x, np.abs(x)) if quiet else 0.0
     if quiet:  # as `collocate` has it, where all states are at rest
         scale = system.scale(OVER_NOISE * noise / how.tolerance)
     run = Taped(engine, system.parameters, x, inputs, how, scale, noise)
