@@ -181,7 +181,8 @@ def results_of(
     errors: list[RunError | None] = [None] * len(x)
     for k in np.flatnonzero(records["failed"]).tolist():
         seen = np.vstack([x[k], batch.states[k]])
-        errors[k] = stuck_error(systems[k], METHOD, float(records["t"][k]), batch.x[k], seen)
+        t, last = float(records["t"][k]), batch.x[k]
+        errors[k] = stuck_error(systems[k], METHOD, t, last, seen, jumps=batch.jumps)
     arrays = batch.states, batch.sums, work
     return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.extra > 0)
 

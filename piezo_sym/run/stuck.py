@@ -9,7 +9,6 @@ import numpy as np
 
 from piezo_sym.errors import STICKING, RunError, listing, quote
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.engine.library import read_source
 from piezo_sym.run.guard import edge_ahead, place, remedies
 from piezo_sym.run.module import UNPROVED, by_name, is_unproved, row_names
 from piezo_sym.run.system import DrivenModule
@@ -26,13 +25,16 @@ PART = 1e-2
 
 
 def stuck_error(
-    system: DrivenModule, method: str, t: float, x: FloatArray, samples: FloatArray
+    system: DrivenModule, method: str, t: float, x: FloatArray, samples: FloatArray, *, jumps: bool
 ) -> RunError:
-    """Return the error of a run that stopped at t [s] in x (n,); of `samples` (nt, n) some nan."""
+    """Return the error of a run that stopped at t [s] in x (n,); of `samples` (nt, n) some nan.
+
+    `jumps` says whether a law of the model jumps.
+    """
     module, u = system.module, system.inputs.at_samples(np.array([t]))[:, 0]
     why = "no step stays in the domain"
     remedy = "look at inputs and state; allow more room in [domain]"
-    if f"{module.NAME}_jumps = 1" in read_source(module, "_step.c"):
+    if jumps:
         why += ", or a law that jumps (sign) holds the state at its jump"
         remedy += f"; {STICKING}"
     past, duration = t - system.inputs.start, system.inputs.duration

@@ -76,6 +76,10 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
 extern const long MODEL(lossy);
 const long MODEL(lossy) = MODEL(heated) >= 0;
 
+/* Whether a law of the model jumps. */
+extern const long MODEL(jumping);
+const long MODEL(jumping) = MODEL(jumps);
+
 /* Alignment of vectors, in bytes. */
 enum { ALIGNED = 64 };
 

@@ -167,6 +167,11 @@ class Batch:
         """The address of the first run."""
         return int(self.records.ctypes.data)
 
+    @property
+    def jumps(self) -> bool:
+        """Whether a law of the model jumps."""
+        return bool(LONG.in_dll(self._library, f"{self._engine.module.NAME}_jumping").value)
+
     def function(self, name: str) -> Any:
         """Return the C function MODEL(name)."""
         return getattr(self._library, f"{self._engine.module.NAME}_{name}")
