@@ -11,6 +11,7 @@ from math import comb
 
 from piezo_sym.expressions.calculus import add, derivative, div, mul, neg, power, rule
 from piezo_sym.expressions.functions import RECORDS
+from piezo_sym.expressions.tidying import collected
 from piezo_sym.expressions.tree import (
     ONE,
     ZERO,
@@ -87,9 +88,10 @@ def _of_degree(node: Expr, name: str, base: Expr) -> Expr:
     """
     degree, raised = _degree(node, name, base)
     slope = slope_of(base, name)
-    if slope is None or (degree < -1 and base == Sym(name)) or (degree == -1 and not raised):
+    exponent = add(*raised, Num(degree + 1))
+    if slope is None or (degree < -1 and base == Sym(name)) or collected(exponent) == ZERO:
         raise NoFormError
-    return div(divided(mul(base, node), slope), add(*raised, Num(degree + 1)))
+    return div(divided(mul(base, node), slope), exponent)
 
 
 def _degree(node: Expr, name: str, base: Expr) -> tuple[Fraction, tuple[Expr, ...]]:

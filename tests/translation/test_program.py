@@ -221,3 +221,11 @@ def test_a_store_of_powers_of_quotients_is_proved_and_another_is_not(store, law,
     assert found.verdict is Verdict.PROVED
     (found,) = rows(iphs, printed(stored(store, near)))
     assert found.verdict is not Verdict.PROVED
+
+
+def test_a_store_whose_exponents_add_up_to_minus_one_has_a_logarithm():
+    law = "F*exp((1/3)*log(a/(a - z)))*exp((2/3)*log(a/(a - z)))"  # F*a/(a - z)
+    iphs = stored(STORES[0], law).expand()
+    at = {"a": 0.3, "b": 0.1, "F": 0.3, "M": 2.0, "n": 1.4, "x": 0.1, "y": 0.0}
+    slope = iphs.U.diff(iphs.symbols["x"]).subs({iphs.symbols[k]: v for k, v in at.items()})
+    assert float(slope) == pytest.approx(0.3 * 0.3 / (0.3 - 0.1), rel=1e-12)
