@@ -117,6 +117,20 @@ load   = { kind = "force_source", at = "tip", input = "F" }
 """
 
 
+BOUC_WEN = Path(__file__).parents[1] / "benchmarks" / "bouc_wen.toml"
+
+
+def test_members_whose_motions_repeat_run_as_they_do_alone():
+    """Steps that are kept from one period to the next are those of the member."""
+    members = Members(load(BOUC_WEN), 20, 12.0, {"F": sine(8.0, 0.5)})
+    alone, together = (members.run(together=on, rtol=2e-6) for on in (False, True))
+    assert np.array_equal(alone.states, together.states)
+    assert np.array_equal(alone.work, together.work)
+    members.x[:8] = np.nan
+    others = members.run(rtol=2e-6)
+    assert np.array_equal(others.states[8:], together.states[8:])
+
+
 def test_members_that_fail_leave_nothing_to_the_next_in_their_lanes():
     """More members than lanes: what a lane tries when its run sticks is not for the next run."""
     members = Members(parse(QUADRATIC), 20, 3.0, {"F": sine(40.0, 1.2)})

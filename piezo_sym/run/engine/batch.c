@@ -48,6 +48,17 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(slack, m->branches);
     PLACE(interval, 2 * m->branches);
     PLACE(successor, 2 * m->branches);
+    MODEL(repeats) *const r = &b->repeats;
+    r->steps = m->branches && m->n <= MOST_STATES_KEPT && task->fixed == 0.0 ? MOST_KEPT : 0;
+    const long row = r->steps ? m->n : 0;
+    PLACE(repeats.number, 2 * m->branches);
+    PLACE(repeats.since, r->steps);
+    PLACE(repeats.lasted, r->steps);
+    PLACE(repeats.rates, r->steps * STAGES * row);
+    PLACE(repeats.change, r->steps * STAGES * row);
+    PLACE(repeats.guess, STAGES * row);
+    PLACE(repeats.more, row);
+    PLACE(repeats.by_step, row);
     PLACE(widest, m->branches);
     PLACE(sums, m->booked);
     PLACE(lost, m->booked);
@@ -143,10 +154,11 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
     b->lane[lane].steady = b->lane[lane].ahead = b->lane[lane].hard = HUGE_VAL;
     b->lane[lane].kept = -HUGE_VAL;
+    b->lane[lane].growth = 1.0;
     b->lane[lane].which = b->lane[lane].turned = b->lane[lane].goal = -1;
-    b->lane[lane].passing = -1;
+    b->lane[lane].passing = b->lane[lane].recalled = -1;
     for (long k = 0; k < 2 * m->branches; ++k)
-        LANE(b->interval, k, lane) = 0.0;
+        LANE(b->interval, k, lane) = 0.0, LANE(b->repeats.number, k, lane) = -1.0;
     for (long k = 0; k < m->branches; ++k)
         LANE(b->after, k, lane) = LANE(b->slack, k, lane) = LANE(b->widest, k, lane) = 0.0;
     b->lane[lane].since = run->t;

@@ -144,8 +144,11 @@ static mask MODEL(crossed)(MODEL(batch) *b, mask where, mask good, real begin, r
     return found;
 }
 
-/* How many lengths of a step after its end a switch is looked for. */
-enum { AHEAD = 3 };
+/*
+ * How many lengths of a step after its end a switch is looked for, and by which factor it may come sooner than a
+ * straight line through the last two values tells.
+ */
+enum { AHEAD = 3, ROUGHLY = 2 };
 
 /*
  * The time from the end of each lane's step to the next sign change of a switching function that approaches
@@ -160,7 +163,8 @@ static real MODEL(until_switch)(const MODEL(batch) *b, real h, mask where, real 
     for (long k = 0; k < m->branches; ++k) {
         const real end = b->end_side[k], stage = m->side[(STAGES - 1) * m->branches + k];
         real ahead = (1.0 - stage_at[STAGES - 1]) * (end / (stage - end)); /* by the last two values */
-        mask near = where & (ahead > 0.0) & (ahead < first) & (size_of(end) > NO_SWITCH * b->widest[k]);
+        mask near = where & (size_of(end) > NO_SWITCH * b->widest[k]);
+        near &= (ahead > 0.0) & (ahead < AHEAD) & (ahead < ROUGHLY * first);
         if (!any(near))
             continue;
         double at[LAST] = {0.0};

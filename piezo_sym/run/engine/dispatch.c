@@ -6,6 +6,8 @@
 /* The current step of all lanes: lengths, which lanes they concern, and their outcomes. */
 typedef struct {
     real begin, h, behind, slope;
+    real ahead, ratio;                 /* where steps begin, and how long they are, in kept steps */
+    mask recalling;                    /* steps that recall kept ones; see repeats.c */
     mask busy, sampling, steps, known; /* lanes with a step; for a sample; another; with a prediction */
     mask planned;                      /* steps whose length their errors decide */
     mask turned;                       /* whose known rates are those before a switch */
@@ -21,7 +23,8 @@ typedef struct {
 
 static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
 {
-    MODEL(dispatch) t = {.begin = zero, .h = zero, .behind = zero, .slope = zero};
+    MODEL(dispatch) t = {.begin = zero, .h = zero, .ahead = zero, .ratio = zero};
+    t.behind = t.slope = zero;
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         MODEL(lane) *l = b->lane + lane;
         t.crossing[lane].which = -1;
@@ -46,6 +49,10 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
         LANE(&t.behind, 0, lane) = l->behind + (l->known > 0.0 ? ahead / l->known : 0.0);
         l->predicted = l->known > 0.0;
         LANE(&t.slope, 0, lane) = l->known > 0.0 ? l->length / l->known : 0.0;
+        if (!IN(t.sampling, lane)) {
+            l->recalls = MODEL(recalls)(b, lane, &LANE(&t.ahead, 0, lane), &LANE(&t.ratio, 0, lane));
+            SET(t.recalling, lane, l->recalls);
+        }
     }
 #if defined(COSTATES)
     b->m.loose = t.loose;
@@ -59,6 +66,18 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
     return t;
 }
 
+/* Predict the rates of all steps, by the steps before them or by kept ones. */
+static void MODEL(predict_all)(MODEL(batch) *b, const MODEL(dispatch) *t)
+{
+    mask repeating = nowhere;
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        SET(repeating, lane, IN(t->recalling, lane) && b->lane[lane].repeats);
+    const long first = any(t->busy & none_of(repeating)) ? 0 : STAGES - 1; /* for a comparison */
+    MODEL(predict)(b, t->behind, t->slope, t->known, t->turned, first);
+    if (any(t->recalling))
+        MODEL(predict_by_kept)(b, t->ahead, t->ratio, t->recalling, repeating);
+}
+
 /* Solve the steps; where they end is in m.reached, and what they add to sums in some_rows. */
 static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
@@ -66,8 +85,9 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
     const mask over = m->over;
     if (any(t->resumed))
         MODEL(begin_at_samples)(b, t->resumed);
-    MODEL(predict)(b, t->behind, t->slope, t->known, t->turned);
+    MODEL(predict_all)(b, t);
     t->found = MODEL(solve)(m, t->h, t->busy);
+    MODEL(compare_predictions)(b, t->h, t->recalling & t->found);
     t->good = t->found & MODEL(accepted)(m);
     MODEL(reach_of)(m, t->h, stage_weight, m->reached);
     MODEL(increments)(b, t->h, b->some_rows);
@@ -75,9 +95,11 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
     MODEL(add_residual)(m, m->reached, b->some_rows);
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         MODEL(lane) *l = b->lane + lane;
+        if (!IN(t->steps, lane)) /* a run does not depend on samples */
+            continue;
         if (IN(t->loose & none_of(m->loose), lane))
             l->to_round_off = TO_ROUND_OFF;
-        else if (l->to_round_off > 0 && IN(t->steps, lane))
+        else if (l->to_round_off > 0)
             --l->to_round_off;
     }
 #endif /* COSTATES */
@@ -261,6 +283,7 @@ static void MODEL(book)(MODEL(batch) *b, MODEL(dispatch) *t)
         MODEL(lane) *l = b->lane + lane;
         if (!IN(t->booked, lane))
             continue;
+        MODEL(keep_step)(b, lane);
         if (MODEL(go_on)(b, lane)) {
             MODEL(turn)(b, lane, l->which, 1);
             SET(t->turns, lane, 1);

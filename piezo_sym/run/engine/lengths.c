@@ -53,12 +53,13 @@ static void MODEL(learn_interval)(MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
     if (l->passing >= 0) {
         double *const interval = &LANE(b->interval, l->passing, lane);
-        const double found = l->t - l->passed, before = fabs(*interval);
+        const double found = l->t - l->beyond - l->passed, before = fabs(*interval);
         *interval = fabs(found - before) <= ALIKE * before ? found : -found;
         LANE(b->successor, l->passing, lane) = (double)l->which;
     }
-    l->passed = l->t;
+    l->passed = l->t - l->beyond;
     l->passing = 2 * l->which + (LANE(b->side, l->which, lane) > 0.0);
+    MODEL(recall_passage)(b, l, lane);
 }
 
 /* Where no switch is seen ahead, one is expected when it came the last times. */

@@ -186,6 +186,7 @@ static int MODEL(reaches)(MODEL(batch) *b, int lane)
 static int MODEL(ends)(MODEL(batch) *b, int lane, long which, double part, int fits, mask *turns)
 {
     MODEL(lane) *l = b->lane + lane;
+    l->beyond = which < 0 ? 0.0 : (1.0 - part) * l->length;
     if (which < 0)
         return l->which < 0 || MODEL(reaches)(b, lane);
     l->which = which;

@@ -46,6 +46,7 @@ typedef struct {
     double aimed;  /* the length of a step but for a switch, just behind which it is to end; or 0 */
     double ahead;  /* time from the end of the step to the next switch, or HUGE_VAL */
     long goal;     /* that switch */
+    double beyond; /* by how much time the step ends behind its switch */
     double passed; /* time of the last switch */
     long passing;  /* the row of `interval` of that switch; -1 if there was none */
     int phase, behind, predicted, last, cuts, refused, halved;
@@ -56,9 +57,25 @@ typedef struct {
     int to_round_off; /* how many more steps are solved to round-off: see residual.c */
     int settled; /* whether no switch was located after all: the step is solved to full accuracy */
     long which, turned; /* the switch at the end of the step, and at its beginning; -1 if none */
+    long steps_kept, recalled; /* how many steps were kept; the number of the one to recall next, or -1 */
+    double growth;             /* of what changes from one time to the next, in the last step */
+    int keeps, recalls, repeats; /* whether steps are kept; one is recalled; it predicts best: see repeats.c */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
     long solves, comparisons;     /* steps solved since then; how often modes were compared */
 } MODEL(lane);
+
+/*
+ * Steps that are kept, to predict those that repeat them (repeats.c), with the passages of switches after which
+ * they came. A function has two rows, by its sign before the switch.
+ */
+typedef struct {
+    long steps;                     /* how many steps are kept at most; 0 if none are */
+    real *number;                   /* 2*branches: of the step after the last passage, or -1 */
+    real *since, *lasted;           /* steps: their time since the passage before them; their length */
+    real *rates, *change;           /* (steps, STAGES, n): their rates, and what changed since the last time */
+    real *guess;                    /* (STAGES, n): the current step's rates, as those of the one it recalls */
+    real *more, *by_step;           /* n: at its last stage, the change; the rates as the step before predicts */
+} MODEL(repeats);
 
 /* What each step of a run begins with; see replay.c. */
 typedef struct {
@@ -84,6 +101,7 @@ typedef struct {
     real *after; /* branches: the length for a step after each switch; 0: not known */
     real *widest; /* branches: the largest magnitude of each switching function so far */
     real *interval, *successor; /* 2*branches: see learn_interval */
+    MODEL(repeats) repeats;
     real *slack; /* branches: by how much time a step may end behind each switch; 0: not known */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
@@ -93,6 +111,8 @@ typedef struct {
 } MODEL(batch);
 
 enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
+/* How many steps are kept, of models with at most so many states. */
+enum { MOST_KEPT = 64, MOST_STATES_KEPT = 64 };
 /* Steps, with their samples, that are solved to round-off after one whose residuals cannot be heat. */
 enum { TO_ROUND_OFF = 20 };
 /*
@@ -291,8 +311,8 @@ static void MODEL(rates_at)(const MODEL(block) *m, const real *rates, real at, r
     }
 }
 
-/* The predictor of Newton's method: the known step's polynomial, or the rates at the beginning. */
-static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known, mask turned)
+/* The predictor of Newton's method: the known step's polynomial, or the rates at the beginning; from a stage on. */
+static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known, mask turned, long first)
 {
     const MODEL(block) *m = &b->m;
     real *const jump = b->some_rate;
@@ -302,7 +322,7 @@ static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known,
         for (long k = 0; k < m->n; ++k)
             jump[k] = chosen(turned, b->rate[k] - jump[k], zero);
     }
-    for (long i = 0; i < STAGES; ++i) {
+    for (long i = first; i < STAGES; ++i) {
         real *const rates = m->rates + i * m->n;
         MODEL(rates_at)(m, b->known, behind + slope * stage_at[i], rates);
         for (long k = 0; k < m->n; ++k) /* zero for a fixed step, which may be much longer than the fastest time constant */
