@@ -56,7 +56,7 @@ def antiderivative(
         return by_rules(node, name)
     plain = compared(node)
     condition = first_choice(plain)
-    if isinstance(node, Add) and (condition or not otherwise):
+    if isinstance(node, Add) and condition:
         terms = [antiderivative(term, name, otherwise, positive) for term in _split(node)]
         known = [term for term in terms if term is not None]
         if len(known) == len(terms):

@@ -162,6 +162,8 @@ def test_an_integral_of_any_law_has_the_law_as_slope(tree, x, y, w):
     [
         "1/x",
         "x*exp(x)",
+        "x*exp(x) + 1/x",
+        "x*exp(x) + (1 if x < 1 else x)",
         "exp(x**2)",
         "x/(x + 1)",
         "1/(x**2 + 1)",
