@@ -7,7 +7,7 @@
 typedef struct {
     real begin, h, behind, slope;
     real ahead, ratio;                 /* where steps begin, and how long they are, in kept steps */
-    mask recalling;                    /* steps that recall kept ones; see repeats.c */
+    mask recalling;                    /* steps that recall kept ones; see predict.c */
     mask busy, sampling, steps, known; /* lanes with a step; for a sample; another; with a prediction */
     mask planned;                      /* steps whose length their errors decide */
     mask turned;                       /* whose known rates are those before a switch */

@@ -1,7 +1,9 @@
 /*
- * Motions that repeat, as under periodic inputs. What follows a switch is then much like what followed the same
+ * The predictors of Newton's method: the step before, or a kept one. Comes after trajectory.c.
+ *
+ * Many motions repeat, as under periodic inputs. What follows a switch is then much like what followed the same
  * switch the last time, and the rates of those steps, with their change from time to time, predict the new ones
- * better than those of the step before. Which is better, a step tells the next one. Comes after trajectory.c.
+ * better than those of the step before. Which is better, a step tells the next one.
  */
 
 /* Steps are kept if those of a run took more iterations than this, on average: else it is not worth the effort. */
@@ -14,6 +16,38 @@
 #define BETTER 0.1
 /* A kept step is as good as the one before where it is off by less than this part of the tolerance. */
 #define NO_MATTER 0.03
+
+/* The polynomial through a step's stage rates, at a fraction of the step. */
+static void MODEL(rates_at)(const MODEL(block) *m, const real *rates, real at, real *out)
+{
+    real weight[STAGES];
+    MODEL(rate_weights)(at, weight);
+    for (long k = 0; k < m->n; ++k) {
+        real sum = zero;
+        for (long j = 0; j < STAGES; ++j)
+            sum += weight[j] * rates[j * m->n + k];
+        out[k] = sum;
+    }
+}
+
+/* Predict rates at stages, from the first one on: by the known step's polynomial, or as at the beginning. */
+static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known, mask turned, long first)
+{
+    const MODEL(block) *m = &b->m;
+    real *const jump = b->some_rate;
+    memset(jump, 0, (size_t)m->n * sizeof(real));
+    if (any(turned)) {
+        MODEL(rates_at)(m, b->known, behind, jump);
+        for (long k = 0; k < m->n; ++k)
+            jump[k] = chosen(turned, b->rate[k] - jump[k], zero);
+    }
+    for (long i = first; i < STAGES; ++i) {
+        real *const rates = m->rates + i * m->n;
+        MODEL(rates_at)(m, b->known, behind + slope * stage_at[i], rates);
+        for (long k = 0; k < m->n; ++k) /* zero for a fixed step, which may be much longer than the fastest time constant */
+            rates[k] = chosen(known, rates[k] + jump[k], b->fixed > 0.0 ? zero : b->rate[k]);
+    }
+}
 
 /* The place of a kept step, by its number in the run. */
 static long MODEL(kept_place)(const MODEL(repeats) *r, long number)

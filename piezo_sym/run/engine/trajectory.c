@@ -59,13 +59,13 @@ typedef struct {
     long which, turned; /* the switch at the end of the step, and at its beginning; -1 if none */
     long steps_kept, recalled; /* how many steps were kept; the number of the one to recall next, or -1 */
     double growth;             /* of what changes from one time to the next, in the last step */
-    int keeps, recalls, repeats; /* whether steps are kept; one is recalled; it predicts best: see repeats.c */
+    int keeps, recalls, repeats; /* whether steps are kept; one is recalled; it predicts best: see predict.c */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
     long solves, comparisons;     /* steps solved since then; how often modes were compared */
 } MODEL(lane);
 
 /*
- * Steps that are kept, to predict those that repeat them (repeats.c), with the passages of switches after which
+ * Steps that are kept, to predict those that repeat them (predict.c), with the passages of switches after which
  * they came. A function has two rows, by its sign before the switch.
  */
 typedef struct {
@@ -295,37 +295,5 @@ static void MODEL(increments)(const MODEL(batch) *b, real h, real *out)
         for (long i = 0; i < STAGES; ++i)
             sum += stage_weight[i] * m->rows[i * m->booked + k];
         out[k] = h * sum;
-    }
-}
-
-/* The polynomial through a step's stage rates, at a fraction of the step. */
-static void MODEL(rates_at)(const MODEL(block) *m, const real *rates, real at, real *out)
-{
-    real weight[STAGES];
-    MODEL(rate_weights)(at, weight);
-    for (long k = 0; k < m->n; ++k) {
-        real sum = zero;
-        for (long j = 0; j < STAGES; ++j)
-            sum += weight[j] * rates[j * m->n + k];
-        out[k] = sum;
-    }
-}
-
-/* The predictor of Newton's method: the known step's polynomial, or the rates at the beginning; from a stage on. */
-static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known, mask turned, long first)
-{
-    const MODEL(block) *m = &b->m;
-    real *const jump = b->some_rate;
-    memset(jump, 0, (size_t)m->n * sizeof(real));
-    if (any(turned)) {
-        MODEL(rates_at)(m, b->known, behind, jump);
-        for (long k = 0; k < m->n; ++k)
-            jump[k] = chosen(turned, b->rate[k] - jump[k], zero);
-    }
-    for (long i = first; i < STAGES; ++i) {
-        real *const rates = m->rates + i * m->n;
-        MODEL(rates_at)(m, b->known, behind + slope * stage_at[i], rates);
-        for (long k = 0; k < m->n; ++k) /* zero for a fixed step, which may be much longer than the fastest time constant */
-            rates[k] = chosen(known, rates[k] + jump[k], b->fixed > 0.0 ? zero : b->rate[k]);
     }
 }
