@@ -7,6 +7,7 @@
 typedef struct {
     real begin, h, behind, slope;
     real ahead, ratio;                 /* where steps begin, and how long they are, in kept steps */
+    real iterations;                   /* all that lanes took before */
     mask recalling;                    /* steps that recall kept ones; see predict.c */
     mask busy, sampling, steps, known; /* lanes with a step; for a sample; another; with a prediction */
     mask planned;                      /* steps whose length their errors decide */
@@ -86,6 +87,7 @@ static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
     if (any(t->resumed))
         MODEL(begin_at_samples)(b, t->resumed);
     MODEL(predict_all)(b, t);
+    t->iterations = m->iterations;
     t->found = MODEL(solve)(m, t->h, t->busy);
     MODEL(compare_predictions)(b, t->h, t->recalling & t->found);
     t->good = t->found & MODEL(accepted)(m);
@@ -169,6 +171,7 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
         MODEL(lane) *l = b->lane + lane;
         if (!IN(t->steps, lane))
             continue;
+        l->iterations += LANE(&b->m.iterations, 0, lane) - LANE(&t->iterations, 0, lane);
         if (!IN(t->found, lane)) {
             l->known = 0.0;
             if (b->fixed > 0.0)

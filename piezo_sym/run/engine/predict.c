@@ -60,7 +60,7 @@ static void MODEL(recall_passage)(MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
     const MODEL(repeats) *const r = &b->repeats;
     double *const number = &LANE(r->number, l->passing, lane);
-    l->keeps |= LANE(&b->m.iterations, 0, lane) > LABORIOUS * (double)(l->run->steps + l->run->rejected);
+    l->keeps |= l->iterations > LABORIOUS * (double)(l->run->steps + l->run->rejected);
     l->keeps &= r->steps && !b->tape;
     l->recalled = l->keeps && *number >= 0.0 && *number < (double)l->steps_kept ? (long)*number : -1;
     *number = l->keeps ? (double)l->steps_kept : -1.0;

@@ -58,6 +58,7 @@ typedef struct {
     int settled; /* whether no switch was located after all: the step is solved to full accuracy */
     long which, turned; /* the switch at the end of the step, and at its beginning; -1 if none */
     long steps_kept, recalled; /* how many steps were kept; the number of the one to recall next, or -1 */
+    double iterations;         /* of its steps, without those for samples */
     double growth;             /* of what changes from one time to the next, in the last step */
     int keeps, recalls, repeats; /* whether steps are kept; one is recalled; it predicts best: see predict.c */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
