@@ -108,6 +108,9 @@ def read_values(
     """Return a target's values, one per point; raise `UsageError` at the first that is invalid."""
     if target.is_size:
         return tuple(integer(value, f"{where}[{n}]", 1) for n, value in enumerate(given))
+    if isinstance(given, np.ndarray) and given.ndim == 1 and given.dtype.kind in "iuf":
+        if np.isfinite(given).all():
+            return given.astype(float)
     listed = enumerate(given.tolist() if isinstance(given, np.ndarray) else given)
     values = tuple(read_value(target, value, f"{where}[{n}]", duration) for n, value in listed)
     numbers = all(isinstance(value, float) for value in values)

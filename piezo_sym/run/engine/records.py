@@ -9,7 +9,8 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from operator import attrgetter
+from itertools import repeat
+from operator import attrgetter, is_
 from typing import Any, final
 
 import numpy as np
@@ -132,7 +133,7 @@ class ParameterRecords:
 
 def _rows(values: Sequence[Any], count: int) -> FloatArray:
     """Return the values of a parameter of a bank, (runs, lanes), or one row for all runs."""
-    if all(value is values[0] for value in values):
+    if all(map(is_, values, repeat(values[0]))):
         return _spread(values[0], count)[None]
     if all(isinstance(value, float) for value in values):
         return np.repeat(np.array(values, dtype=float)[:, None], count, axis=1)
