@@ -1,9 +1,4 @@
-/*
- * Batches of runs: a lane that has finished one run takes the next.  Comes after dispatch.c.
- *
- * A survey by rough midpoint steps first finds the largest magnitude of each state, by which errors
- * are measured.
- */
+/* Batches of runs: a lane that has finished one run takes the next.  Comes after dispatch.c. */
 
 /* What Python asks of a batch; fields as in MODEL(batch). */
 typedef struct {
@@ -14,18 +9,12 @@ typedef struct {
     double stop, tolerance, first, longest, fixed;
 } MODEL(task);
 
-enum { ROUGH_ITERATIONS = 8 };
 /* Accuracy of rates that only serve to locate a switch, as a fraction of the tolerance. */
 #define SKETCH 0.01
 /* Accuracy of rates whose residuals become heat, as a fraction of the tolerance. */
 #define RESIDUAL 3e-2
 /* With at least this many switches it may be better to step over kinks. */
 enum { MANY = 8 };
-/* Accuracy of a survey's steps, and the shortest of them, as a fraction of the longest. */
-#define ROUGH 1e-3
-#define SHORTEST 1e-6
-/* The most steps of a survey; later magnitudes count when the run itself reaches them. */
-enum { MOST_SURVEYED = 10000 };
 
 /* Sizes and places of a model's arrays, see the model's own function. */
 void MODEL(sizes_of)(const MODEL(parameters) *p, long *out);
@@ -48,17 +37,17 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(slack, m->branches);
     PLACE(interval, 2 * m->branches);
     PLACE(successor, 2 * m->branches);
-    MODEL(repeats) *const r = &b->repeats;
-    r->steps = m->branches && m->n <= MOST_STATES_KEPT && task->fixed == 0.0 ? MOST_KEPT : 0;
-    const long row = r->steps ? m->n : 0;
-    PLACE(repeats.number, 2 * m->branches);
-    PLACE(repeats.since, r->steps);
-    PLACE(repeats.lasted, r->steps);
-    PLACE(repeats.rates, r->steps * STAGES * row);
-    PLACE(repeats.change, r->steps * STAGES * row);
-    PLACE(repeats.guess, STAGES * row);
-    PLACE(repeats.more, row);
-    PLACE(repeats.by_step, row);
+    MODEL(history) *const past = &b->past;
+    const int recorded = m->branches && m->n <= MOST_STATES_RECORDED && task->fixed == 0.0;
+    past->steps = recorded ? MOST_RECORDED : 0;
+    PLACE(past.first, 2 * m->branches);
+    PLACE(past.begin, past->steps);
+    PLACE(past.length, past->steps);
+    PLACE(past.rates, past->steps * STAGES * m->n);
+    PLACE(past.change, past->steps * STAGES * m->n);
+    PLACE(past.aligned, recorded * STAGES * m->n);
+    PLACE(past.last_change, recorded * m->n);
+    PLACE(past.by_step, recorded * m->n);
     PLACE(widest, m->branches);
     PLACE(sums, m->booked);
     PLACE(lost, m->booked);
@@ -154,127 +143,16 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
     b->lane[lane].steady = b->lane[lane].ahead = b->lane[lane].hard = HUGE_VAL;
     b->lane[lane].kept = -HUGE_VAL;
-    b->lane[lane].growth = 1.0;
+    b->lane[lane].drift = 1.0;
     b->lane[lane].which = b->lane[lane].turned = b->lane[lane].goal = -1;
     b->lane[lane].passing = b->lane[lane].recalled = -1;
     for (long k = 0; k < 2 * m->branches; ++k)
-        LANE(b->interval, k, lane) = 0.0, LANE(b->repeats.number, k, lane) = -1.0;
+        LANE(b->interval, k, lane) = 0.0, LANE(b->past.first, k, lane) = -1.0;
     for (long k = 0; k < m->branches; ++k)
         LANE(b->after, k, lane) = LANE(b->slack, k, lane) = LANE(b->widest, k, lane) = 0.0;
     b->lane[lane].since = run->t;
     SET(b->m.over, lane, b->over_kinks);
     MODEL(sample_here)(b, lane);
-}
-
-/* Midpoint steps of length h by Newton's method, their middles in m->reached; returns who succeeds. */
-static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
-{
-    MODEL(block) *m = &b->m;
-    mask going = where;
-    memcpy(m->reached, m->x, (size_t)m->n * sizeof(real));
-#if defined(PATHS)
-    m->surveyed = h;
-#endif
-    for (int iteration = 0; iteration < ROUGH_ITERATIONS && any(going); ++iteration) {
-        real worst = zero;
-        m->iterations += chosen(going, wide(1.0), zero);
-        for (int again = 0; again < 3; ++again) {
-            MODEL(point)(b, m->reached, m->branch, NULL, b->some_rate, b->some_side);
-            if (!any(MODEL(choose)(m->branches, b->some_side, m->branch, going)))
-                break;
-        }
-        MODEL(slopes)(m->reached, m->node, m->branch, b->some_inputs, &m->p, m->slope);
-        MODEL(factorise_real)(m, 0.5 * h, m->slope, m->real_factor);
-        for (long k = 0; k < m->n; ++k)
-            b->some_rate[k] = m->x[k] + 0.5 * h * b->some_rate[k] - m->reached[k];
-        MODEL(solve_real)(m, 0.5 * h, m->slope, m->real_factor, b->some_rate);
-        for (long k = 0; k < m->n; ++k) {
-            const real change = chosen(going, b->some_rate[k], zero);
-            m->reached[k] += change;
-            worst = largest_of(size_of(change) / (m->largest[k] + size_of(m->reached[k]) + 1e-300), worst);
-        }
-        const mask far = worst > ROUGH, lost = worst != worst;
-        where &= none_of(lost & going);
-        going &= far;
-    }
-#if defined(PATHS)
-    m->surveyed = zero;
-#endif
-    return where & MODEL(within)(b->some_margin) & none_of(going);
-}
-
-/*
- * Prepare a lane for the next step of its survey; returns whether there is one. A step that fails is tried
- * anew from the middle of the one before it: there fast modes do not ring, as they do from end to end of
- * steps too long for them, with an amplitude that short steps would take for a motion.
- */
-static int MODEL(go_on_surveying)(MODEL(batch) *b, int lane, double longest, int good)
-{
-    MODEL(lane) *l = b->lane + lane;
-    const double stop = MODEL(until)(b, l);
-    if (!good) {
-        l->t -= 0.5 * l->known;
-        l->known = 0.0;
-        l->h *= 0.25;
-        return l->h > longest * SHORTEST;
-    }
-    l->known = l->h;
-    l->t = l->t + l->h < stop - 1e-9 * l->h ? l->t + l->h : stop;
-    l->h = MODEL(lesser)(2.0 * l->h, longest);
-    if (l->t >= stop && l->t < b->stop) {
-        MODEL(enter)(b->waves, ++l->segment, b->m.inputs, lane);
-        l->known = 0.0;
-    }
-    return l->t < b->stop;
-}
-
-/* Survey as many runs as there are lanes, from `first` on, by steps of at most this length. */
-static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
-{
-    MODEL(block) *m = &b->m;
-    mask going = nowhere;
-    for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {
-        MODEL(load)(b, lane, b->runs + first + lane);
-        b->lane[lane].h = longest;
-        SET(going, lane, 1);
-    }
-    for (long step = 0; step < MOST_SURVEYED && any(going); ++step) {
-        real h = zero;
-        for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-            MODEL(lane) *l = b->lane + lane;
-            if (!IN(going, lane))
-                continue;
-            l->h = MODEL(lesser)(l->h, MODEL(until)(b, l) - l->t);
-            LANE(&h, 0, lane) = l->h;
-        }
-        MODEL(inputs_at)(b, going, MODEL(now)(b) + 0.5 * h, b->some_inputs);
-        const mask good = MODEL(midpoint)(b, h, going);
-        mask back = nowhere;
-        for (int lane = 0; lane < REAL_WIDTH; ++lane)
-            SET(back, lane, IN(going, lane) && !IN(good, lane) && b->lane[lane].known > 0.0);
-        for (long k = 0; k < m->n; ++k) {
-            const real middle = m->reached[k];
-            m->largest[k] = chosen(good, largest_of(size_of(middle), m->largest[k]), m->largest[k]);
-            m->x[k] = chosen(good, 2.0 * middle - m->x[k], chosen(back, b->kept[k], m->x[k]));
-            b->kept[k] = chosen(good, middle, b->kept[k]);
-        }
-        for (int lane = 0; lane < REAL_WIDTH; ++lane)
-            if (IN(going, lane))
-                SET(going, lane, MODEL(go_on_surveying)(b, lane, longest, IN(good, lane) != 0));
-    }
-    for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {
-        for (long k = 0; k < m->n; ++k)
-            b->runs[first + lane].largest[k] = LANE(m->largest, k, lane);
-        b->lane[lane].phase = IDLE;
-    }
-}
-
-/* Find how large the states of all runs become, by steps of at most this length. */
-void MODEL(survey)(MODEL(batch) *b, double longest);
-void MODEL(survey)(MODEL(batch) *b, double longest)
-{
-    for (long first = 0; first < b->count; first += REAL_WIDTH)
-        MODEL(survey_some)(b, first, longest);
 }
 
 /* Take at most `steps` steps in each lane; returns whether there is more to do. */

@@ -16,8 +16,8 @@ from piezo_sym.expressions.tree import Sym
 #: Collocation steps of runs in lanes, behind a model's own text and the tables of their stages.
 _COLLOCATION = (
     *("newton.c", "residual.c", "nodes.c", "inputs.c", "trajectory.c", "predict.c"),
-    *("error.c", "crossings.c", "replay.c", "samples.c", "lengths.c", "outcome.c", "dispatch.c"),
-    *("batch.c", "step_once.c"),
+    *("error.c", "crossings.c", "replay.c", "samples.c", "lengths.c", "outcome.c", "plan.c"),
+    *("dispatch.c", "batch.c", "survey.c", "step_once.c"),
 )
 #: Nodes for means over a step, beyond its stages.
 _MORE_NODES = 2

@@ -1,83 +1,7 @@
 /*
- * One step in every lane that has a run: planned, solved, judged by its error and its switches, and
- * booked.  Comes after outcome.c.
+ * One step in every lane that has a run: solved as planned, judged by its error and its switches, and
+ * booked.  Comes after plan.c.
  */
-
-/* The current step of all lanes: lengths, which lanes they concern, and their outcomes. */
-typedef struct {
-    real begin, h, behind, slope;
-    real ahead, ratio;                 /* where steps begin, and how long they are, in kept steps */
-    real iterations;                   /* all that lanes took before */
-    mask recalling;                    /* steps that recall kept ones; see predict.c */
-    mask busy, sampling, steps, known; /* lanes with a step; for a sample; another; with a prediction */
-    mask planned;                      /* steps whose length their errors decide */
-    mask turned;                       /* whose known rates are those before a switch */
-    mask loose;                        /* where Newton's method may stop short of round-off */
-    mask resumed;                      /* whose step begins at the last sample */
-    mask found, good;                  /* lanes whose step has rates; and lies in the domain */
-    mask search, switched;             /* where a switch has to be located; and a step may be cut */
-    mask fits;                         /* whose step may end where it does, behind its switch */
-    mask booked, turns, ends;          /* whose step counts; whose branches turn; who steps to kinks */
-    MODEL(crossing) crossing[REAL_WIDTH];
-    double part[REAL_WIDTH];
-} MODEL(dispatch);
-
-static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
-{
-    MODEL(dispatch) t = {.begin = zero, .h = zero, .ahead = zero, .ratio = zero};
-    t.behind = t.slope = zero;
-    for (int lane = 0; lane < REAL_WIDTH; ++lane) {
-        MODEL(lane) *l = b->lane + lane;
-        t.crossing[lane].which = -1;
-        t.part[lane] = 1.0;
-        if (l->phase == IDLE)
-            continue;
-        MODEL(plan)(b, l);
-        SET(t.busy, lane, 1);
-        SET(t.sampling, lane, l->phase == SAMPLE || l->phase == RESUME);
-        SET(t.resumed, lane, l->phase == RESUME);
-        SET(t.planned, lane, l->phase == STEP && b->fixed == 0.0);
-        SET(b->m.sketch, lane, IN(t.planned, lane) && !l->settled);
-        const int turned = l->phase == STEP && l->behind && l->turned >= 0;
-        const int known = l->known > 0.0 && !(turned && l->length > LIKE_BEFORE * l->known);
-        SET(t.known, lane, known);
-        SET(t.turned, lane, known && turned);
-        SET(t.loose, lane, b->fixed == 0.0 && !b->tape && !l->to_round_off); /* a tape has exact roots */
-        l->solves += !IN(t.sampling, lane);
-        LANE(&t.h, 0, lane) = l->length;
-        LANE(&t.begin, 0, lane) = MODEL(begin)(l);
-        const double ahead = MODEL(begin)(l) - l->t; /* of the run */
-        LANE(&t.behind, 0, lane) = l->behind + (l->known > 0.0 ? ahead / l->known : 0.0);
-        l->predicted = l->known > 0.0;
-        LANE(&t.slope, 0, lane) = l->known > 0.0 ? l->length / l->known : 0.0;
-        if (!IN(t.sampling, lane)) {
-            l->recalls = MODEL(recalls)(b, lane, &LANE(&t.ahead, 0, lane), &LANE(&t.ratio, 0, lane));
-            SET(t.recalling, lane, l->recalls);
-        }
-    }
-#if defined(COSTATES)
-    b->m.loose = t.loose;
-    if (b->tape) /* its steps are taken again to the bit */
-        b->m.allowed = 0.0;
-#endif /* COSTATES */
-    for (long i = 0; i < STAGES; ++i)
-        MODEL(inputs_at)(b, t.busy, t.begin + stage_at[i] * t.h, b->m.u + i * b->m.inputs);
-    t.steps = t.busy & none_of(t.sampling);
-    b->m.sketch &= t.steps & none_of(b->m.over);
-    return t;
-}
-
-/* Predict the rates of all steps, by the steps before them or by kept ones. */
-static void MODEL(predict_all)(MODEL(batch) *b, const MODEL(dispatch) *t)
-{
-    mask repeating = nowhere;
-    for (int lane = 0; lane < REAL_WIDTH; ++lane)
-        SET(repeating, lane, IN(t->recalling, lane) && b->lane[lane].repeats);
-    const long first = any(t->busy & none_of(repeating)) ? 0 : STAGES - 1; /* for a comparison */
-    MODEL(predict)(b, t->behind, t->slope, t->known, t->turned, first);
-    if (any(t->recalling))
-        MODEL(predict_by_kept)(b, t->ahead, t->ratio, t->recalling, repeating);
-}
 
 /* Solve the steps; where they end is in m.reached, and what they add to sums in some_rows. */
 static void MODEL(solved)(MODEL(batch) *b, MODEL(dispatch) *t)
@@ -172,6 +96,11 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
         if (!IN(t->steps, lane))
             continue;
         l->iterations += LANE(&b->m.iterations, 0, lane) - LANE(&t->iterations, 0, lane);
+        if (!IN(t->found, lane) && l->recalls && l->repeats) { /* once more, predicted by the step before */
+            l->repeats = 0;
+            l->recalled = -1;
+            continue;
+        }
         if (!IN(t->found, lane)) {
             l->known = 0.0;
             if (b->fixed > 0.0)
@@ -286,7 +215,7 @@ static void MODEL(book)(MODEL(batch) *b, MODEL(dispatch) *t)
         MODEL(lane) *l = b->lane + lane;
         if (!IN(t->booked, lane))
             continue;
-        MODEL(keep_step)(b, lane);
+        MODEL(record_step)(b, lane);
         if (MODEL(go_on)(b, lane)) {
             MODEL(turn)(b, lane, l->which, 1);
             SET(t->turns, lane, 1);

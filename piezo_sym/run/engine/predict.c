@@ -1,20 +1,20 @@
 /*
- * The predictors of Newton's method: the step before, or a kept one. Comes after trajectory.c.
+ * The predictors of Newton's method: the rates of the step before, or recorded ones. Comes after trajectory.c.
  *
  * Many motions repeat, as under periodic inputs. What follows a switch is then much like what followed the same
- * switch the last time, and the rates of those steps, with their change from time to time, predict the new ones
- * better than those of the step before. Which is better, a step tells the next one.
+ * switch the last time: the rates recorded there, with their change from one time to the next, predict those of
+ * new steps better than the step before does. Which prediction was better in a step decides for the next one.
  */
 
-/* Steps are kept if those of a run took more iterations than this, on average: else it is not worth the effort. */
+/* Steps are recorded if those of a run take more iterations than this: few are not worth the copies of rates. */
 #define LABORIOUS 2.5
-/* By how much of its length a kept step may be extended, at either end. */
+/* By how much of its length a recorded step may be extended, at either end. */
 #define EXTENDED 0.25
-/* By how much the change from time to time may grow at most, as a factor. */
-#define FASTEST_GROWTH 2.0
-/* A kept step counts as better if its prediction is off by less than this part of the other: that may be by chance. */
+/* The most by which the change from one time to the next may grow, as a factor. */
+#define FASTEST_DRIFT 2.0
+/* A recorded step predicts better if it is off by less than this part of the other prediction: chance is left out. */
 #define BETTER 0.1
-/* A kept step is as good as the one before where it is off by less than this part of the tolerance. */
+/* It is as good as the other if it is off by less than this part of the tolerance. */
 #define NO_MATTER 0.03
 
 /* The polynomial through a step's stage rates, at a fraction of the step. */
@@ -49,143 +49,153 @@ static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known,
     }
 }
 
-/* The place of a kept step, by its number in the run. */
-static long MODEL(kept_place)(const MODEL(repeats) *r, long number)
+/* The place of a recorded step, by its number in the run. */
+static long MODEL(place_of_step)(const MODEL(history) *past, long number)
 {
-    return number % r->steps;
+    return number % past->steps;
 }
 
-/* A lane's run passes a switch: tell whether steps are kept from now on, and which are to be recalled. */
+/* A lane's run passes a switch: tell whether steps are recorded from now on, and which are to be recalled. */
 static void MODEL(recall_passage)(MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
-    const MODEL(repeats) *const r = &b->repeats;
-    double *const number = &LANE(r->number, l->passing, lane);
-    l->keeps |= l->iterations > LABORIOUS * (double)(l->run->steps + l->run->rejected);
-    l->keeps &= r->steps && !b->tape;
-    l->recalled = l->keeps && *number >= 0.0 && *number < (double)l->steps_kept ? (long)*number : -1;
-    *number = l->keeps ? (double)l->steps_kept : -1.0;
+    double *const first = &LANE(b->past.first, l->passing, lane);
+    if (b->past.steps && !b->tape && l->iterations > LABORIOUS * (double)(l->run->steps + l->run->rejected))
+        l->records = 1; /* until the run ends */
+    l->recalled = l->records && *first >= 0.0 && *first < (double)l->recorded ? (long)*first : -1;
+    *first = l->records ? (double)l->recorded : -1.0;
 }
 
-/* Keep the step that ends now. */
-static void MODEL(keep_step)(MODEL(batch) *b, int lane)
+/* Record the step that ends now. */
+static void MODEL(record_step)(MODEL(batch) *b, int lane)
 {
-    const MODEL(repeats) *const r = &b->repeats;
+    const MODEL(history) *const past = &b->past;
     MODEL(lane) *l = b->lane + lane;
-    if (!l->keeps)
+    if (!l->records)
         return;
-    const long place = MODEL(kept_place)(r, l->steps_kept++), size = STAGES * b->m.n;
-    real *const rates = r->rates + place * size, *const change = r->change + place * size;
-    LANE(r->since, place, lane) = l->t - l->passed;
-    LANE(r->lasted, place, lane) = l->step;
+    const long place = MODEL(place_of_step)(past, l->recorded++), size = STAGES * b->m.n;
+    real *const rates = past->rates + place * size, *const change = past->change + place * size;
+    LANE(past->begin, place, lane) = l->t - l->passed;
+    LANE(past->length, place, lane) = l->step;
     for (long k = 0; k < size; ++k) {
         const double found = LANE(b->known, k, lane);
         LANE(rates, k, lane) = found;
-        LANE(change, k, lane) = l->recalls ? found - LANE(r->guess, k, lane) : 0.0;
+        LANE(change, k, lane) = l->recalls ? found - LANE(past->aligned, k, lane) : 0.0;
     }
 }
 
-/*
- * Whether a kept step lies after its switch where the lane's next step does after the same switch. `ahead` and
- * `ratio` are where the new step begins and how long it is, in lengths of the kept one.
- */
-static int MODEL(recalls)(const MODEL(batch) *b, int lane, double *ahead, double *ratio)
+/* Go on to the recorded step of the same passage in which a time after the switch lies, or to the last one. */
+static long MODEL(seek_recorded)(const MODEL(history) *past, MODEL(lane) *l, int lane, double time)
 {
-    const MODEL(repeats) *const r = &b->repeats;
-    MODEL(lane) *l = b->lane + lane;
-    if (l->recalled < 0 || l->phase != STEP || l->refused || l->settled || IN(b->m.over, lane))
-        return 0;
-    if (l->steps_kept - l->recalled > r->steps) /* later ones are in its place */
-        return 0;
-    const double begin = l->t - l->passed, middle = begin + 0.5 * l->length;
-    long place = MODEL(kept_place)(r, l->recalled);
-    while (LANE(r->since, place, lane) + LANE(r->lasted, place, lane) < middle) {
-        const long next = MODEL(kept_place)(r, l->recalled + 1);
-        if (l->recalled + 1 >= l->steps_kept || LANE(r->since, next, lane) <= LANE(r->since, place, lane))
-            break; /* it follows another switch */
+    long place = MODEL(place_of_step)(past, l->recalled);
+    while (l->recalled + 1 < l->recorded) {
+        const double begin = LANE(past->begin, place, lane), length = LANE(past->length, place, lane);
+        const long next = MODEL(place_of_step)(past, l->recalled + 1);
+        if (begin + length >= time || LANE(past->begin, next, lane) < begin + 0.5 * length)
+            break; /* the next one follows another switch */
         place = next;
         ++l->recalled;
     }
-    const double lasted = LANE(r->lasted, place, lane);
-    *ahead = (begin - LANE(r->since, place, lane)) / lasted;
-    *ratio = l->length / lasted;
+    return place;
+}
+
+/*
+ * Whether a lane's next step recalls a recorded one, which lies likewise after the same switch. `ahead` and `ratio`
+ * are where the new step begins and how long it is, in lengths of the recorded one.
+ */
+static int MODEL(recalls)(const MODEL(batch) *b, int lane, double *ahead, double *ratio)
+{
+    const MODEL(history) *const past = &b->past;
+    MODEL(lane) *l = b->lane + lane;
+    if (l->recalled < 0 || l->phase != STEP || l->refused || l->settled || IN(b->m.over, lane))
+        return 0;
+    if (l->recorded - l->recalled > past->steps) /* later ones are in its place */
+        return 0;
+    const double begin = l->t - l->passed;
+    const long place = MODEL(seek_recorded)(past, l, lane, begin + 0.5 * l->length);
+    const double length = LANE(past->length, place, lane);
+    *ahead = (begin - LANE(past->begin, place, lane)) / length;
+    *ratio = l->length / length;
     return *ahead >= -EXTENDED && *ahead + *ratio <= 1.0 + EXTENDED;
 }
 
 /* The rates of one state in the steps that lanes recall, and their change since the time before. */
 static void MODEL(recalled_rates)(const MODEL(batch) *b, mask recalling, long k, real *rates, real *change)
 {
-    const MODEL(repeats) *const r = &b->repeats;
+    const MODEL(history) *const past = &b->past;
     const long n = b->m.n;
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         if (!IN(recalling, lane))
             continue;
-        const long first = MODEL(kept_place)(r, b->lane[lane].recalled) * STAGES * n + k;
+        const long first = MODEL(place_of_step)(past, b->lane[lane].recalled) * STAGES * n + k;
         for (long j = 0; j < STAGES; ++j) {
-            LANE(rates, j, lane) = LANE(r->rates, first + j * n, lane);
-            LANE(change, j, lane) = LANE(r->change, first + j * n, lane);
+            LANE(rates, j, lane) = LANE(past->rates, first + j * n, lane);
+            LANE(change, j, lane) = LANE(past->change, first + j * n, lane);
         }
     }
 }
 
 /*
- * The rates of steps by those that they recall: predictions in lanes that are `repeating`, and to be compared with
- * those in m.rates in the others. The change since the last time goes on to grow as it did in the step before.
+ * The rates of steps by those that they recall: predictions in lanes where `better`; in the others, m.rates stay,
+ * and both are compared later. The change from one time to the next grows as it did in the step before.
  */
-static void MODEL(predict_by_kept)(MODEL(batch) *b, real ahead, real ratio, mask recalling, mask repeating)
+static void MODEL(predict_by_history)(MODEL(batch) *b, real ahead, real ratio, mask recalling, mask better)
 {
     const MODEL(block) *m = &b->m;
-    const MODEL(repeats) *const r = &b->repeats;
+    const MODEL(history) *const past = &b->past;
     const long n = m->n;
-    real weight[STAGES][STAGES], growth = zero;
+    real weight[STAGES][STAGES], drift = zero;
     for (int lane = 0; lane < REAL_WIDTH; ++lane)
-        LANE(&growth, 0, lane) = b->lane[lane].growth;
+        LANE(&drift, 0, lane) = b->lane[lane].drift;
     for (long i = 0; i < STAGES; ++i)
         MODEL(rate_weights)(ahead + ratio * stage_at[i], weight[i]);
     for (long k = 0; k < n; ++k) {
-        real rates[STAGES], change[STAGES];
+        real rates[STAGES], change[STAGES], last_change = zero;
         memset(rates, 0, sizeof rates);
         memset(change, 0, sizeof change);
         MODEL(recalled_rates)(b, recalling, k, rates, change);
-        r->by_step[k] = m->rates[(STAGES - 1) * n + k];
+        past->by_step[k] = m->rates[(STAGES - 1) * n + k];
         for (long i = 0; i < STAGES; ++i) {
-            real guess = zero, more = zero;
+            real aligned = zero, more = zero;
             for (long j = 0; j < STAGES; ++j) {
-                guess += weight[i][j] * rates[j];
+                aligned += weight[i][j] * rates[j];
                 more += weight[i][j] * change[j];
             }
-            r->guess[i * n + k] = chosen(recalling, guess, r->guess[i * n + k]);
-            m->rates[i * n + k] = chosen(repeating, guess + growth * more, m->rates[i * n + k]);
-            r->more[k] = more; /* in the end that of the last stage */
+            past->aligned[i * n + k] = chosen(recalling, aligned, past->aligned[i * n + k]);
+            m->rates[i * n + k] = chosen(better, aligned + drift * more, m->rates[i * n + k]);
+            last_change = more;
         }
+        past->last_change[k] = last_change;
     }
 }
 
 /*
- * Learn in some lanes which prediction was better, by the rates of the last stage that were found; and by how much
- * the change since the last time has grown since then.
+ * Learn in some lanes which prediction of the last stage was better, and by how much the change from one time to
+ * the next has grown.
  */
 static void MODEL(compare_predictions)(MODEL(batch) *b, real h, mask where)
 {
     const MODEL(block) *m = &b->m;
-    const MODEL(repeats) *const r = &b->repeats;
+    const MODEL(history) *const past = &b->past;
     const long last = (STAGES - 1) * m->n;
-    real by_kept = zero, by_step = zero, both = zero, before = zero, growth = zero;
+    real by_history = zero, by_step = zero, both = zero, before = zero, drift = zero;
+    if (!any(where))
+        return;
     for (int lane = 0; lane < REAL_WIDTH; ++lane)
-        LANE(&growth, 0, lane) = b->lane[lane].growth;
-    for (long k = 0; k < m->n && any(where); ++k) {
+        LANE(&drift, 0, lane) = b->lane[lane].drift;
+    for (long k = 0; k < m->n; ++k) {
         const real found = m->rates[last + k], per = 1.0 / (m->largest[k] + size_of(m->x[k]) + 1e-300);
-        const real changed = per * (found - r->guess[last + k]), expected = per * r->more[k];
-        by_kept = largest_of(size_of(changed - growth * expected), by_kept);
-        by_step = largest_of(size_of(per * (found - r->by_step[k])), by_step);
+        const real changed = per * (found - past->aligned[last + k]), expected = per * past->last_change[k];
+        by_history = largest_of(size_of(changed - drift * expected), by_history);
+        by_step = largest_of(size_of(per * (found - past->by_step[k])), by_step);
         both += changed * expected;
         before += expected * expected;
     }
-    const mask better = (by_kept < BETTER * by_step) | (h * by_kept <= wide(NO_MATTER * b->tolerance));
+    const mask better = (by_history < BETTER * by_step) | (h * by_history <= wide(NO_MATTER * b->tolerance));
     for (int lane = 0; lane < REAL_WIDTH; ++lane) {
         if (!IN(where, lane))
             continue;
-        const double grown = LANE(&both, 0, lane) / LANE(&before, 0, lane);
+        const double grown = LANE(&both, 0, lane) / LANE(&before, 0, lane); /* nan without a change */
         b->lane[lane].repeats = IN(better, lane) != 0;
-        b->lane[lane].growth = grown >= 0.0 ? MODEL(lesser)(grown, FASTEST_GROWTH) : grown < 0.0 ? 0.0 : 1.0;
+        b->lane[lane].drift = grown >= 0.0 ? MODEL(lesser)(grown, FASTEST_DRIFT) : grown < 0.0 ? 0.0 : 1.0;
     }
 }

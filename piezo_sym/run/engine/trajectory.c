@@ -57,26 +57,26 @@ typedef struct {
     int to_round_off; /* how many more steps are solved to round-off: see residual.c */
     int settled; /* whether no switch was located after all: the step is solved to full accuracy */
     long which, turned; /* the switch at the end of the step, and at its beginning; -1 if none */
-    long steps_kept, recalled; /* how many steps were kept; the number of the one to recall next, or -1 */
-    double iterations;         /* of its steps, without those for samples */
-    double growth;             /* of what changes from one time to the next, in the last step */
-    int keeps, recalls, repeats; /* whether steps are kept; one is recalled; it predicts best: see predict.c */
+    long recorded, recalled;   /* how many steps are recorded; the number of the one to recall, or -1 */
+    double iterations;         /* of the run's own steps, without those for samples */
+    double drift;              /* growth of what changes from one time to the next, in the last step */
+    int records, recalls, repeats; /* whether steps are recorded; one is recalled; it predicts best */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
     long solves, comparisons;     /* steps solved since then; how often modes were compared */
 } MODEL(lane);
 
 /*
- * Steps that are kept, to predict those that repeat them (predict.c), with the passages of switches after which
- * they came. A function has two rows, by its sign before the switch.
+ * The last steps of a run, by which those are predicted that repeat them (predict.c). Switching functions have two
+ * rows each, by their sign before the switch.
  */
 typedef struct {
-    long steps;                     /* how many steps are kept at most; 0 if none are */
-    real *number;                   /* 2*branches: of the step after the last passage, or -1 */
-    real *since, *lasted;           /* steps: their time since the passage before them; their length */
-    real *rates, *change;           /* (steps, STAGES, n): their rates, and what changed since the last time */
-    real *guess;                    /* (STAGES, n): the current step's rates, as those of the one it recalls */
-    real *more, *by_step;           /* n: at its last stage, the change; the rates as the step before predicts */
-} MODEL(repeats);
+    long steps;                  /* how many steps are recorded at most; 0 if none are */
+    real *first;                 /* 2*branches: number of the first step after the last such switch, or -1 */
+    real *begin, *length;        /* steps: when each began after its switch; its length */
+    real *rates, *change;        /* (steps, STAGES, n): rates, and their change since the last time */
+    real *aligned;               /* (STAGES, n): rates of the recalled step, at the stages of the current one */
+    real *last_change, *by_step; /* n, at the last stage: the change; what the step before predicts */
+} MODEL(history);
 
 /* What each step of a run begins with; see replay.c. */
 typedef struct {
@@ -102,7 +102,7 @@ typedef struct {
     real *after; /* branches: the length for a step after each switch; 0: not known */
     real *widest; /* branches: the largest magnitude of each switching function so far */
     real *interval, *successor; /* 2*branches: see learn_interval */
-    MODEL(repeats) repeats;
+    MODEL(history) past;
     real *slack; /* branches: by how much time a step may end behind each switch; 0: not known */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
     real *kept_branch;                  /* of the run, while a step begins there */
@@ -112,9 +112,9 @@ typedef struct {
 } MODEL(batch);
 
 enum { MOST_REFUSED = 200, MOST_CUTS = 4 };
-/* How many steps are kept, of models with at most so many states. */
-enum { MOST_KEPT = 64, MOST_STATES_KEPT = 64 };
-/* Steps, with their samples, that are solved to round-off after one whose residuals cannot be heat. */
+/* How many steps are recorded, of models with at most so many states. */
+enum { MOST_RECORDED = 64, MOST_STATES_RECORDED = 64 };
+/* Steps, with their samples, that are solved to round-off after a step of the run whose residuals cannot be heat. */
 enum { TO_ROUND_OFF = 20 };
 /*
  * A run ends after this many steps in a row that are at most CRAWL times the time at its end: at the edge
