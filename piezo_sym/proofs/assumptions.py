@@ -54,7 +54,7 @@ class Assumptions:
     where: tuple[Cmp, ...]  # the domain, T > 0, and ties of names to states
     order: tuple[str, ...]  # names, in the order in which a witness should be simple
     texts: tuple[str, ...]  # the domain, as text
-    #: Each temperature, and the obligation that it is positive.
+    #: The name of each temperature, and (id, element) of the obligation that it is positive.
     warm: tuple[tuple[str, tuple[str, str]], ...] = ()
     fixed: frozenset[str] = frozenset()  # names that are constant in a run: the parameters
 
