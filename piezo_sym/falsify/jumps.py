@@ -115,7 +115,7 @@ def _confirmed(
 def _narrowed(
     values_at: Callable[[Fraction], Values], low: Fraction, high: Fraction
 ) -> tuple[Any, tuple[Fraction, Fraction]] | None:
-    """Return the difference on two approaching sides, and the sides; None if it fades."""
+    """Return the difference on two sides that approach a kink, and the sides; None if it fades."""
     scale, gaps = max(abs(low), abs(high)), []
     one, other = values_at(low), values_at(high)
     gap = most = _gap(one, other)

@@ -123,7 +123,7 @@ class Space:
 
     @cached_property
     def edges_by_column(self) -> Mapping[str, tuple[int, ...]]:
-        """The numbers of the edges that may depend on each column; all may through the module."""
+        """The indices of the edges that depend on each column; module results depend on all."""
         found: dict[str, tuple[int, ...]] = {}
         for n, edge in enumerate(self.probe.edges):
             behind = self.probe.behind(edge.tree)

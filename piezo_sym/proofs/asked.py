@@ -185,7 +185,7 @@ def simple_counterexample(claim: Cmp, letter: str, domain: DomainOracle) -> Numb
 def _candidates(
     claim: Cmp, letter: str, domain: DomainOracle, point: Numbers | None
 ) -> Iterator[Numbers]:
-    """Yield points with simple values of the letter; where it is tied to states, by the solver."""
+    """Yield points with simple values of the letter; if states tie it, as the solver finds them."""
     if point is None:
         return
     if not _tied(letter, domain):

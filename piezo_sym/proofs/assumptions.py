@@ -33,7 +33,7 @@ class Law:
     tree: Expr  # the law
     letter: str = ""  # of a dissipative law, the letter of its conjugate variable
     jumps: bool = False  # whether the spec declares it discontinuous
-    #: The equation of a letter with states, if it cannot take every value; None if not known.
+    #: Equation letter = drive (states, inputs), if the letter may be bounded; None: drive unknown.
     ties: tuple[Cmp | None, ...] = ()
     #: The laws as the spec has them, where the network inverts the law or joins stores.
     written: tuple[Expr, ...] = ()

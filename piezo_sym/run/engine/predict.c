@@ -6,9 +6,9 @@
  * better than those of the step before. Which is better, a step tells the next one.
  */
 
-/* Steps are kept if those of a run took more iterations than this, on average: else it is not worth the effort. */
+/* Steps are kept if those of the run take more Newton iterations than this on average: else it does not pay. */
 #define LABORIOUS 2.5
-/* By how much of its length a kept step may be extended, at either end. */
+/* The fraction of its length by which a kept step may be extrapolated at either end. */
 #define EXTENDED 0.25
 /* By how much the change from time to time may grow at most, as a factor. */
 #define FASTEST_GROWTH 2.0
@@ -55,7 +55,7 @@ static long MODEL(kept_place)(const MODEL(repeats) *r, long number)
     return number % r->steps;
 }
 
-/* A lane's run passes a switch: tell whether steps are kept from now on, and which are to be recalled. */
+/* A lane's run passes a switch: decide whether steps are kept from now on, and from which on they are recalled. */
 static void MODEL(recall_passage)(MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
     const MODEL(repeats) *const r = &b->repeats;
@@ -85,8 +85,8 @@ static void MODEL(keep_step)(MODEL(batch) *b, int lane)
 }
 
 /*
- * Whether a kept step lies after its switch where the lane's next step does after the same switch. `ahead` and
- * `ratio` are where the new step begins and how long it is, in lengths of the kept one.
+ * Whether a kept step covers the time after its switch that the lane's next step covers after the same switch.
+ * `ahead` and `ratio` are begin and length of the new step, in lengths of the kept one.
  */
 static int MODEL(recalls)(const MODEL(batch) *b, int lane, double *ahead, double *ratio)
 {
@@ -94,7 +94,7 @@ static int MODEL(recalls)(const MODEL(batch) *b, int lane, double *ahead, double
     MODEL(lane) *l = b->lane + lane;
     if (l->recalled < 0 || l->phase != STEP || l->refused || l->settled || IN(b->m.over, lane))
         return 0;
-    if (l->steps_kept - l->recalled > r->steps) /* later ones are in its place */
+    if (l->steps_kept - l->recalled > r->steps) /* it has been overwritten */
         return 0;
     const double begin = l->t - l->passed, middle = begin + 0.5 * l->length;
     long place = MODEL(kept_place)(r, l->recalled);
@@ -111,7 +111,7 @@ static int MODEL(recalls)(const MODEL(batch) *b, int lane, double *ahead, double
     return *ahead >= -EXTENDED && *ahead + *ratio <= 1.0 + EXTENDED;
 }
 
-/* The rates of one state in the steps that lanes recall, and their change since the time before. */
+/* The stage rates of one state in the steps that lanes recall, and how they changed from one passage to the next. */
 static void MODEL(recalled_rates)(const MODEL(batch) *b, mask recalling, long k, real *rates, real *change)
 {
     const MODEL(repeats) *const r = &b->repeats;
