@@ -128,8 +128,8 @@ static void MODEL(recalled_rates)(const MODEL(batch) *b, mask recalling, long k,
 }
 
 /*
- * The rates of steps by those that they recall: predictions in lanes that are `repeating`, and to be compared with
- * those in m.rates in the others. The change since the last time goes on to grow as it did in the step before.
+ * The rates of steps by those of the steps that they recall: predictions in lanes that are `repeating`, in the others
+ * only compared with m.rates later. The change from passage to passage grows as it did in the step before.
  */
 static void MODEL(predict_by_kept)(MODEL(batch) *b, real ahead, real ratio, mask recalling, mask repeating)
 {
@@ -155,14 +155,14 @@ static void MODEL(predict_by_kept)(MODEL(batch) *b, real ahead, real ratio, mask
             }
             r->guess[i * n + k] = chosen(recalling, guess, r->guess[i * n + k]);
             m->rates[i * n + k] = chosen(repeating, guess + growth * more, m->rates[i * n + k]);
-            r->more[k] = more; /* in the end that of the last stage */
+            r->more[k] = more; /* at last that of the last stage */
         }
     }
 }
 
 /*
- * Learn in some lanes which prediction was better, by the rates of the last stage that were found; and by how much
- * the change since the last time has grown since then.
+ * Decide in some lanes which prediction of the last stage's rates was better; and by which factor the change from
+ * passage to passage has grown.
  */
 static void MODEL(compare_predictions)(MODEL(batch) *b, real h, mask where)
 {

@@ -59,7 +59,7 @@ typedef struct {
     long which, turned; /* the switch at the end of the step, and at its beginning; -1 if none */
     long steps_kept, recalled; /* how many steps were kept; the number of the one to recall next, or -1 */
     double iterations;         /* of its steps, without those for samples */
-    double growth;             /* of what changes from one time to the next, in the last step */
+    double growth;             /* of the rates' change from passage to passage, in the last step */
     int keeps, recalls, repeats; /* whether steps are kept; one is recalled; it predicts best: see predict.c */
     double since, pace[2]; /* when the mode at kinks was chosen; time covered per solve in each mode */
     long solves, comparisons;     /* steps solved since then; how often modes were compared */
@@ -73,9 +73,9 @@ typedef struct {
     long steps;                     /* how many steps are kept at most; 0 if none are */
     real *number;                   /* 2*branches: of the step after the last passage, or -1 */
     real *since, *lasted;           /* steps: their time since the passage before them; their length */
-    real *rates, *change;           /* (steps, STAGES, n): their rates, and what changed since the last time */
-    real *guess;                    /* (STAGES, n): the current step's rates, as those of the one it recalls */
-    real *more, *by_step;           /* n: at its last stage, the change; the rates as the step before predicts */
+    real *rates, *change;           /* (steps, STAGES, n): their rates; the change from the step they recalled */
+    real *guess;                    /* (STAGES, n): the rates of the recalled step, as a guess of the current ones */
+    real *more, *by_step;           /* n: at the last stage, that change; the rates predicted by the step before */
 } MODEL(repeats);
 
 /* What each step of a run begins with; see replay.c. */
@@ -105,7 +105,7 @@ typedef struct {
     MODEL(repeats) repeats;
     real *slack; /* branches: by how much time a step may end behind each switch; 0: not known */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
-    real *kept_branch;                  /* of the run, while a step begins there */
+    real *kept_branch;                  /* branches of the run, while a step begins at the last sample */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
     real *some_rate, *some_left, *some_side, *some_rows, *some_margin, *some_inputs;
     long sizes[SIZES];
