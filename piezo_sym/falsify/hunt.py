@@ -199,7 +199,7 @@ class Hunt:
                 raise self._contradiction(claim, value, space.words(point))
             if key < ZERO and claim.says and not rounding:
                 plain = not space.at(point[:, None]).out_of_range[0]
-                rounding = (space, point) if plain else None  # under- and overflow are not told
+                rounding = (space, point) if plain else None  # not if products overflow
         if claim.id == "continuous":
             found = jump(claim, self.space, self.sides, exact)
             if found:

@@ -90,7 +90,7 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
 
 
 def _of_lanes(laws: Laws, edges: list[Edge]) -> str:
-    """Return why a linear law among branches is not turned round: it is of a bank; or ''."""
+    """Return the note that a linear law is not turned round because it belongs to a bank, or ''."""
     for placed, port in ((edge.placed, edge.port) for edge in edges if edge.placed.bank):
         if isinstance(port, DissipativePort) and turn(port, laws.circuit.names):
             bank = f"'{placed.element}' is of a bank"

@@ -143,7 +143,7 @@ class DomainOracle:
         return None
 
     def related(self, words: Iterable[str]) -> set[str]:
-        """Return `words` and all names that conditions connect with them, directly or by others."""
+        """Return `words` and all names that conditions connect with them, even indirectly."""
         known = {*words}
         return known.union(*(names(condition) for condition in connected(self.where, known)))
 

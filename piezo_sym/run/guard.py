@@ -17,7 +17,7 @@ from piezo_sym.run.inputs import Segment
 from piezo_sym.run.module import GeneratedModule, by_name, row_name, rows
 from piezo_sym.run.system import DrivenModule
 
-NAME = re.compile(r"[A-Za-z_]\w*\b(?!\()")  # of no function
+NAME = re.compile(r"[A-Za-z_]\w*\b(?!\()")  # a name that is not called
 MOST_VALUES = 4
 #: Checks of inputs per longest step; the most numbers (checks times states) in a run.
 CHECKS, MOST_NUMBERS = 4, 5_000_000

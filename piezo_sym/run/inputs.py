@@ -30,7 +30,7 @@ class InputWarning(UserWarning):
     """An input drove the run that is continued, but is not given now: it has its default again."""
 
 
-CLOSE = 1e-12  # of the end time: breaks nearer than this are one
+CLOSE = 1e-12  # fraction of the end time: breaks closer than this are merged
 LEAST_JUMP = 1e-6  # of an input's size nearby: smaller differences are round-off of a corner
 
 

@@ -26,7 +26,7 @@ IMPLICIT = ("Radau", "BDF", "LSODA")
 MOST_STILL = 20  # the most steps in a row that do not change the time
 #: The most steps of equal length in a row; their relative difference; the most that may be left.
 MOST_EQUAL, SAME, MOST_LEFT = 200, 1e-3, 2000
-NEAR = 1e-9  # of a time: LSODA cannot start closer to its end
+NEAR = 1e-9  # fraction of the end time: LSODA cannot start closer to it
 SHORTEST = 1e-12  # of a segment: the shortest first step after a failure
 
 

@@ -70,7 +70,7 @@ class Expressions:
     numbers: Mapping[float, Fraction]  # see `Proved`
     #: Reads what the language or its names give a meaning: names, subscripts, other calls.
     leaf: Leaf
-    functions: Mapping[str, str]  # the name of each function in the text, and what it is
+    functions: Mapping[str, str]  # the function of laws behind each function name in the text
     whole_division: bool  # whether a quotient of integers is an integer, as in C
 
     def __call__(self, node: ast.expr) -> Read:

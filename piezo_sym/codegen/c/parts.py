@@ -1,8 +1,8 @@
 """Large functions in parts: the time of compilers grows with the square of a function's length.
 
 Input: what a function computes and writes.  Output: the writes of each part.  A part computes all
-that it needs, also what others compute, so that parts share nothing: writes that read neighbouring
-fields of the state come together.
+that it needs, even what other parts compute, too, so that parts share nothing; writes that read
+neighbouring fields of the state are put into one part.
 """
 
 from collections.abc import Iterable, Iterator, Sequence

@@ -141,7 +141,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
     MODEL(copy)(t->steps, m->reached, m->end, m->n);
     MODEL(copy)(t->steps, b->some_rows, b->part, m->booked);
     MODEL(copy)(t->steps & t->found, m->rates, b->known, STAGES * m->n);
-#if defined(PATHS) /* where it began, as its stages tell */
+#if defined(PATHS) /* rates at the begin: those of path functionals follow from the stages */
     if (b->fixed == 0.0)
         MODEL(as_begun)(b, t);
 #endif

@@ -3,7 +3,7 @@
  *
  * Many motions repeat, as under periodic inputs. What follows a switch is then much like what followed the same
  * switch the last time, and the rates of those steps, with their change from time to time, predict the new ones
- * better than those of the step before. Which is better, a step tells the next one.
+ * better than those of the step before. Each step decides which prediction the next one uses.
  */
 
 /* Steps are kept if those of the run take more Newton iterations than this on average: else it does not pay. */

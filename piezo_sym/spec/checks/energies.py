@@ -56,7 +56,7 @@ def check_energies(spec: Tables) -> None:
 def _check_law(
     spec: Tables, law: LawField, owners: Mapping[str, str], hot: Mapping[str, str]
 ) -> None:
-    """Refuse a law of a store that depends on states of others; `owners` has their elements.
+    """Refuse a store's law that depends on states of other elements, which `owners` gives.
 
     `hot` is the body of each temperature.
     """
