@@ -69,8 +69,8 @@ def render(model: Model, *, allow_unproved: bool = False) -> Mapping[str, str]:
 def report_and_files(model: Model) -> tuple[Report, Mapping[str, str]]:
     """Return the verdicts on a model, and the text of each file that is generated of it.
 
-    What is proved is kept: the very same model is not proved again. Where the time was too short to
-    print the module, there are only the files of verdicts.
+    Results of a proved model are kept, so that an equal model is not proved again. If the time was
+    too short to print the module, there are only the files of verdicts.
     """
     files: Mapping[str, str] | None = kept(model.key, PROVED)
     if files and PROOFS.format(model.name) in files:
@@ -82,13 +82,13 @@ def report_and_files(model: Model) -> tuple[Report, Mapping[str, str]]:
 def report_and_texts(
     model: Model, meanwhile: Callable[[Template], AbstractContextManager[None]] | None = None
 ) -> tuple[Report, Template | None]:
-    """Return the verdicts on a model, and its texts with them.
+    """Return the verdicts on a model, and the template of its texts, with the verdict in it.
 
-    Without a template if the time was too short for its texts.
+    The template is None if the time was too short to print the texts.
 
     Parameters
     ----------
-    meanwhile : what is done with the texts before the verdicts are known.
+    meanwhile : a context for the time from the texts to the verdicts, such as compiling ahead.
     """
     template = None
     with examining(model) as found:
@@ -102,7 +102,7 @@ def report_and_texts(
 def keep_proved(model: Model, report: Report, template: Template | None) -> dict[str, str]:
     """Return the text of each generated file of a model; they are kept if it is proved.
 
-    Where a row was late, its module is kept until more is known of it, but not what is said of it.
+    If a row was not decided in time, the module is kept, but not the verdicts.
     """
     files = files_of(model, report, template)
     if template and report.proved:

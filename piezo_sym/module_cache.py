@@ -1,8 +1,8 @@
-"""The user's cache: a record of each thing that is kept; and a loader of generated modules.
+"""The user's cache of plain data, one record per key, and a loader of generated modules.
 
-Input: a hash of a spec, of its shape or of what it says, and what was made of it.  Output: the very
-same, or a loaded module.  What was made by other sources of the package, or proved with other
-libraries, is not found.
+Input: a hash of a spec, with or without its values, and the data to keep.  Output: the data as it
+was kept, or a loaded module.  Records of other versions of the package, or of other versions of the
+libraries that prove, are not found.
 """
 
 import ast
@@ -29,14 +29,14 @@ from piezo_sym.files import (
 )
 from piezo_sym.version import own_sources, unchanged
 
-#: Endings of folders of records: the texts of modules, and of those that are not proved; templates;
-#: all files of what is proved; specs that were loaded.
+#: Endings of the folders of records: texts of proved modules; texts of modules that are not proved;
+#: templates; all generated files of proved models; specs that were loaded.
 MODULE, UNPROVED_MODULE, SHAPE, PROVED, LOADED = "", "-unproved", "-shape", "-proved", "-loaded"
 RECORD = "record.json"  # of plain data, after its digest
 
 
 def kept(key: str, kind: str) -> Any:
-    """Return the plain data kept under a key; None if it is missing, or not what was kept."""
+    """Return the plain data kept under a key; None if it is missing or damaged."""
     folder = _folder(key, kind)
     with suppress(FileError):
         digest, _, text = (read_text(folder / RECORD) or "").partition("\n")
@@ -47,7 +47,7 @@ def kept(key: str, kind: str) -> Any:
 def keep(key: str, kind: str, content: Any, sources: str) -> bool:
     """Keep plain data under a key, if possible, and return whether it is kept.
 
-    Only what the sources made that this process has imported, by their hash.
+    It is kept only if `sources`, the hash of the sources that made it, are those of this process.
     """
     if not sources or sources != own_sources() or not unchanged():
         return False
@@ -63,12 +63,12 @@ def _folder(key: str, kind: str) -> Path:
 
 
 def _digest(folder: Path, text: str) -> str:
-    """Return the digest of a record, which is that of no other folder's."""
+    """Return the digest of a record; it depends on the folder, so that no record can be moved."""
     return hashlib.sha256(f"{folder.name}\n{text}".encode()).hexdigest()
 
 
 def cached_module(name: str, sha256: str, kind: str = MODULE) -> ModuleType | None:
-    """Return a module from the cache, None if it is not there; its record mends its files."""
+    """Return a module from the cache, or None; files that differ from its record are rewritten."""
     if (texts := kept(sha256, kind)) is None:
         return None
     folder = _folder(sha256, kind)
@@ -87,7 +87,7 @@ def cache_module(
 
 
 def write_module(folder: Path, name: str, texts: Mapping[str, str]) -> ModuleType:
-    """Write a module's texts to a folder where they are not there, and return the module."""
+    """Write those texts of a module that a folder does not have yet, and return the module."""
     contents = {folder / f"{name}{ending}": text.encode() for ending, text in texts.items()}
     write_together({path: data for path, data in contents.items() if read_bytes(path) != data})
     return load_module(folder / f"{name}.py")

@@ -99,7 +99,7 @@ def _of_file(path: Path, text: str, stages: int | None) -> ModuleType:
 
 
 def _of_model(model: Model, stages: int | None) -> ModuleType:
-    from piezo_sym.spec.model import Model  # whoever has one has loaded its type
+    from piezo_sym.spec.model import Model  # loaded already if `model` is one
 
     if not isinstance(model, Model):
         expected = "the name of a shipped spec, the path of a spec file, or a Model"
@@ -113,13 +113,13 @@ def _of_model(model: Model, stages: int | None) -> ModuleType:
 
 @lru_cache(maxsize=64)
 def _check_derivation(model: Model) -> None:
-    """Refuse values that contradict each other where others do not, as starts of joined stores."""
+    """Refuse values that contradict each other, as initial values of joined stores may."""
     from piezo_sym.derivation import derive
 
     derive(model)
 
 
-#: What the run before has read; nobody changes it.
+#: The data of specs read before; it must not be changed.
 _data = lru_cache(maxsize=64)(data)
 _hash = lru_cache(maxsize=64)(lambda text: spec_hash(_data(text)))
 
@@ -127,7 +127,7 @@ _hash = lru_cache(maxsize=64)(lambda text: spec_hash(_data(text)))
 def _known(path: Path, content: dict[str, Any], text: str) -> ModuleType | None:
     """Return the module of a spec, if loading would not refuse what it says: see `_remember`."""
     tables = all(isinstance(table, dict) for table in content.values())
-    if (tables and path.parent == MODELS) or _was_loaded(content):  # tests load those that it has
+    if (tables and path.parent == MODELS) or _was_loaded(content):  # a shipped spec is valid
         name = str(content.get("model", {}).get("name"))
         if module := _available(name, _hash(text)):
             return module
@@ -135,10 +135,10 @@ def _known(path: Path, content: dict[str, Any], text: str) -> ModuleType | None:
 
 
 def _remember(content: dict[str, Any]) -> None:
-    """Remember that a spec was loaded, whose data has this very text, and one but for its values.
+    """Remember that a spec with exactly this data was loaded, and one that differs in values only.
 
-    A hash is not enough: it leaves out entries without effect, such as `count = 0`, that loading
-    may refuse.
+    The spec's own hash is not enough: it leaves out entries without effect, such as `count = 0`,
+    that loading may refuse.
     """
     for one in (content, without_values(content)):
         keep(_digest(one), LOADED, True, own_sources())
@@ -173,7 +173,7 @@ def _packaged(name: str, sha256: str) -> ModuleType | None:
 def _available(name: str, sha256: str) -> ModuleType | None:
     """Return the module of exactly this spec: the package's own, or from the user's cache.
 
-    One that is not proved only if the working folder has the same.
+    A module that is not proved is returned only if the working folder has the same one.
     """
     if found := _packaged(name, sha256) or cached_module(name, sha256):
         return found
@@ -188,9 +188,9 @@ def _kept_template(shape: str) -> Template | None:
 
 
 def _refilled(content: dict[str, Any]) -> ModuleType | None:
-    """Return the module of a spec that differs by values from a loaded one; None if it is not so.
+    """Return the module of a spec that differs in values from a loaded one, or None in doubt.
 
-    What else loading would say of the values, the module's conditions say: in doubt, None.
+    The module's own conditions replace the checks of values that loading would make.
     """
     found, name = _kept_template(shape_hash(content)), content["model"]["name"]
     if found is None or not found.quick:
@@ -250,9 +250,9 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
 def _compiling_ahead(
     name: str, shape: str, texts: Mapping[str, str], stages: int | None
 ) -> Iterator[None]:
-    """Compile what a run needs, and import what its result is, while a module is proved.
+    """Compile the steps of a run, and import xarray for its result, while a module is proved.
 
-    Where the proof fails, nobody waits for the compiler.
+    If the proof fails, the compiler is not waited for.
     """
     if stages is None:
         yield

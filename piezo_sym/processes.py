@@ -20,7 +20,7 @@ from weakref import WeakSet
 
 T = TypeVar("T")
 
-#: No line is longer; of a process that never ends its line no more is read.
+#: The longest line of an answer; of a process that never ends its line, no more than this is read.
 LONGEST = 1 << 28
 #: Makes glibc keep freed memory for the next request: to get it from the system again takes longer
 #: than most answers.
@@ -63,7 +63,7 @@ class Worker:
                     yield from self._exchange(request, is_last)
                 finally:
                     watch.cancel()
-            except BaseException:  # what comes later would be taken for the next request's answer
+            except BaseException:  # late lines would be taken for the next answer
                 self.close()
                 if late.is_set():
                     raise TimeoutError from None
@@ -86,7 +86,7 @@ class Worker:
                 pipe and pipe.close()
 
     def forget(self) -> None:
-        """Leave the process to the one that this one is a copy of; start another when asked."""
+        """In a forked copy, leave the process to the original; start another when asked."""
         self.process, self._lock = None, threading.Lock()
 
     def _start(self) -> None:
@@ -133,16 +133,16 @@ _workers: WeakSet[Worker] = WeakSet()
 
 def search_path() -> str:
     """Return where this process looks for modules, for one that is started with ``-P``."""
-    known = (path for path in sys.path if isinstance(path, str))  # Python passes over others, too
+    known = (path for path in sys.path if isinstance(path, str))  # Python skips others, too
     return os.pathsep.join(path or os.getcwd() for path in known)
 
 
 @contextmanager
 def beside(work: Iterator[T]) -> Iterator[Iterator[T]]:
-    """Give what some work yields, done in a copy of this process, which ends with the context.
+    """Yield the results of some work that a forked copy of this process does in the meantime.
 
-    What the work raises is raised where its next result is asked for: an `EOFError` if the copy
-    has ended, by a fault or for want of memory, which is as limited as that of this process.
+    The copy ends with the context.  An exception of the work is raised when its next result is
+    asked for; it is `EOFError` if the copy crashed or ran out of memory (it has the same limit).
     """
     (back, to), (alive, held) = os.pipe(), os.pipe()
     if (copy := os.fork()) == 0:

@@ -8,16 +8,16 @@ from functools import cache
 from pathlib import Path
 
 VERSION = "0.1.0"
-#: How a generated file begins.
+#: The first line of a generated file, without comment marks.
 MADE = f"Made by piezo_sym {VERSION}; do not edit: change the spec, then run `piezo-sym generate`."
 PACKAGE = Path(__file__).parent
-#: Endings of the package's sources, and other packages that proofs rest on.
+#: Endings of the package's sources, and the other packages on which proofs rest.
 SOURCES = (".py", ".c", ".h")
 PROVERS = ("sympy", "z3-solver", "cvc5", "python-flint", "pint", "numpy")
 
 
 def _sources() -> dict[str, tuple[int, int, int]]:
-    """Return the paths of all sources, each with what no edit leaves as it is."""
+    """Return the path of every source, with the file's attributes that any edit changes."""
     found = {}
     for folder, folders, names in os.walk(PACKAGE):
         if folder == str(PACKAGE) and "generated" in folders:
@@ -34,24 +34,24 @@ def _sources() -> dict[str, tuple[int, int, int]]:
     return found
 
 
-#: The sources when the package was imported; nothing else of it is imported before.
+#: The sources when the package was imported: this file is imported before all others.
 _BEGUN = _sources()
 
 
 def unchanged() -> bool:
-    """Return whether the sources are those that this process has imported, or will import."""
+    """Return whether no source has changed since this process imported the package."""
     return _sources() == _BEGUN
 
 
 @cache
 def own_sources() -> str:
-    """Return the hash of the sources that this process runs; "" if they were changed meanwhile."""
+    """Return the hash of the sources that this process runs; "" if they have changed since."""
     found = sources_hash()
     return found if unchanged() else ""
 
 
 def sources_hash() -> str:
-    """Return the hash of the sources that there are now, and of the versions of its provers."""
+    """Return the hash of the present sources and of the versions of the provers."""
     import sys
     from importlib.metadata import PackageNotFoundError, version
 

@@ -1,8 +1,8 @@
 """Integrals that SymPy finds: ``python -m piezo_sym.algebra.integrals`` is the process that looks.
 
 Input: a smooth law and a name.  Output: a tree whose derivative is shown to be the law, or None.
-The process ends itself after `SECONDS`, whatever SymPy does, and its memory is limited.  It is
-processor time: what else the machine does must not decide which laws have an energy.
+The process ends itself after `SECONDS`, whatever SymPy does, and its memory is limited.  The limit
+is processor time, so that other work on the machine does not decide which laws have an energy.
 """
 
 import json
@@ -71,8 +71,8 @@ def _antiderivative(text: str, name: str, positive: list[str]) -> str | None:
 def _of_root(law: sp.Expr, x: sp.Symbol) -> sp.Expr | None:
     """Return an integral of a law whose roots are all of one s = a*x + b; None for other laws.
 
-    It is found as one by s > 0, where the roots are real: for x itself, of unknown sign, SymPy
-    gives cases by abs(x) and the imaginary unit, which no law has.
+    The law is integrated over s > 0, where the roots are real: over x, whose sign is unknown, SymPy
+    gives cases with abs(x) and the imaginary unit, which no law has.
     """
     powers = (p for p in law.atoms(sp.Pow) if p.exp.is_Rational and not p.exp.is_Integer)
     bases = {p.base for p in powers if p.base.has(x)} - {x}

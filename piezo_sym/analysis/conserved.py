@@ -8,7 +8,7 @@ import numpy as np
 
 from piezo_sym.run.checks import FloatArray
 
-FLOOR = 1e-15  # of sizes, which are not 0
+FLOOR = 1e-15  # least size of a row, so that none is 0
 RANK_TOLERANCE = 1e-12  # singular values below are round-off
 SHARE_TOLERANCE = 1e-9  # smaller coefficients of conserved functions are round-off
 
@@ -16,11 +16,11 @@ SHARE_TOLERANCE = 1e-9  # smaller coefficients of conserved functions are round-
 def conserved_functions(changes: FloatArray, size: FloatArray) -> FloatArray:
     """Return linear functions (k, n) of the state that are zero on all `changes` (n, many).
 
-    Rows are compared by their `size` (n,).
+    Changes of a state are measured in its `size` (n,).
     """
     changes = changes / size[:, None]
     changes = changes[:, np.isfinite(changes).all(axis=0) & changes.any(axis=0)]
-    changes /= np.abs(changes).max(axis=0, initial=0.0)  # squares of tiny numbers are zero
+    changes /= np.abs(changes).max(axis=0, initial=0.0)  # else squares of tiny numbers underflow
     changes /= np.linalg.norm(changes, axis=0)
     rows = np.maximum(np.abs(changes).max(axis=1, initial=0.0), FLOOR)
     triangle = np.linalg.qr((changes / rows[:, None]).T, mode="r")

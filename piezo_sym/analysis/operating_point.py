@@ -36,8 +36,8 @@ from piezo_sym.run.parameters import (
 from piezo_sym.run.system import DrivenModule
 
 WHERE = "operating_point"
-#: The step along directions to other states of rest; the least relative change of a temperature,
-#: per unit, that is more than round-off. Entropies have sizes that change one by 1e-6.
+#: The step along directions to other states of rest; the least relative change of a temperature per
+#: unit step that is not round-off. The size of an entropy is what changes a temperature by 1e-6.
 STEP, SAME = 1e-2, 1e-9
 
 
@@ -165,7 +165,7 @@ def _refuse_open_bodies(
 ) -> None:
     """Raise `RunError` if the temperature of a body differs between states of rest.
 
-    Along `directions` (n, k), in which stores may change without it.
+    `directions` (n, k) lead to other states of rest; stores may change along them.
     """
     if not directions.any():
         return

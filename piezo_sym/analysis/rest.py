@@ -29,11 +29,11 @@ GROWTH = 4.0  # of the Euler step
 CONTRACTION = 0.25  # the largest second Newton move of an Euler step, over the first
 AT_REST = 1e-9  # a move at rest, over the states' sizes
 ROUND_OFF = 1e-13
-AT_LIMIT = 1.0 + 1e-15  # of a stop that yields: its effort over its limit, despite round-off
+AT_LIMIT = 1.0 + 1e-15  # effort over limit of a stop that surely yields, despite round-off
 COUNTS = 1e-6  # the least relative change of a body's temperature that counts as a motion
 UNDETERMINED = 1e-6  # components of a unit vector below this are round-off
 SINGULAR = 1e-10  # over the greatest singular value of the scaled Jacobian
-JACOBIANS = 8  # states on the way whose Jacobians tell which functions are conserved
+JACOBIANS = 8  # states on the way whose Jacobians show which functions are conserved
 
 Rows: TypeAlias = np.ndarray[Any, np.dtype[np.intp]]
 

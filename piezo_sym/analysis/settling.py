@@ -20,10 +20,10 @@ from piezo_sym.run import simulate
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.module import by_name
 
-#: The accuracy of runs; how far rest may move from one to the next, over the sizes of states.
+#: The rtol of runs; how far the rest may differ between two runs, over the sizes of the states.
 RTOL, SAME = 1e-7, 1e-5
-#: The length of the first run, in periods of the slowest oscillation, or else in times of the
-#: fastest motion; that of each next run over the last; the most runs, and steps of the last.
+#: The length of the first run, in periods of the slowest oscillation, or without one in times of
+#: the fastest motion; length of a run over that of the last; the most runs, and steps of one.
 PERIODS, TIMES, LONGER, MOST_RUNS, MOST_STEPS = 3.0, 100.0, 10.0, 8, 20_000
 
 
@@ -60,13 +60,13 @@ class Rest:
         size = np.where(self.directions.any(axis=1), self.size, np.nan)
         for own, effort, limit in self.search.efforts(self.x):
             part = np.divide(limit, effort, out=np.zeros_like(effort), where=effort > 0)
-            size[own] = np.abs(self.x[own]) * part  # at which it yields
+            size[own] = np.abs(self.x[own]) * part  # the state at which the stop yields
         return size
 
     def is_at(self, x: FloatArray) -> bool:
-        """Return whether the state x (n,) is this one, but for motions that are too small to slip.
+        """Return whether the state x (n,) is this rest, apart from motions too small to slip.
 
-        A momentum is as large as what its mass would have in motions of the other states' sizes.
+        The size of a momentum is that in motions in which the other states change by their sizes.
         """
         slope = self.search.jacobian(self.x)
         fastest = float(np.max(np.abs(np.linalg.eigvals(slope)), initial=0.0)) or 1.0

@@ -175,9 +175,9 @@ def _read(
 def _settled_states(
     strobe: Stroboscope, given: tuple[float, float] | None
 ) -> tuple[Stroboscope, list[Settled]]:
-    """Return settled states over the range; if none is given, also below while the body cools.
+    """Return settled states over the range; without a given range, also below if the body cools.
 
-    Where nothing settles, states that move nothing are set free: see the stroboscope returned.
+    If nothing settles, states on which no rate depends need not repeat in the returned stroboscope.
     """
     low, high = temperature_range(strobe, given)
     temperatures = grid(low, high)

@@ -33,7 +33,7 @@ class _Certificate:
     def __init__(self, spec: Spec, element: Element, prover: Prover) -> None:
         self.law, self.prover, self.left = element.law or num(0), prover, MOST_WINDOWS
         self.real, self.letter = Prover(()), ("z", element.name)
-        # the letter has a _ where the spec uses its name otherwise
+        # a certificate appends _ to the letter if the spec uses the same name for something else
         meanings = {element.letter: self.letter, **spec.words, f"{element.letter}_": self.letter}
         self.words = {word: sym(meaning) for word, meaning in meanings.items()}
 
@@ -51,7 +51,7 @@ class _Certificate:
         covered = free and self.prover.proves(compare(held, ">"))
         need(covered, "its cases are not shown to cover the domain")
         for own, case in zip(guards, cases, strict=True):
-            if not self.prover.proves(compare(num(1), "<"), own):  # the case may not be empty
+            if not self.prover.proves(compare(num(1), "<"), own):  # the case is not empty
                 self._case(case["terms"], own)
 
     def _case(self, terms: Any, guards: tuple[Node, ...]) -> None:
@@ -63,7 +63,7 @@ class _Certificate:
         field, claims = Field(known, scales=True), list[Claim]()
         parts = (num(0), *(self.read(term["law"]) for term in terms))
         need(field.same(self.law, Node("+", parts)), "its terms are not shown to make up the law")
-        # so must prefactor*f(s), whose values are shown to exist
+        # the same for prefactor*f(s), which is shown to have a value
         products = (num(0), *(self._product(term, claims) for term in terms))
         need(field.same(self.law, Node("+", products)), "a term is not shown to be prefactor*f(s)")
         follow = all(self.prover.proves(claim, (*guards, *path)) for claim, path in claims)

@@ -85,14 +85,14 @@ Told: TypeAlias = Callable[[Node], Any]
 class Field:
     """The atoms of one comparison; `known` decides whether a comparison always holds.
 
-    Comparisons lose positive factors only if it `scales`: some depend on the size of a bank.
+    Positive factors are removed from comparisons only if `scales`: some depend on a bank's size.
     """
 
     def __init__(self, known: Told = lambda _: False, *, scales: bool = False) -> None:
         self.atoms, self.known, self.scales = dict[Any, tuple[int, Node]](), known, scales
         # polynomials that are zero, by their atom: c**2 - c of a choice, r**n - base of a root.
-        # Those of roots of sums are apart in `sums`: a remainder by several of them, which share
-        # symbols, depends on their order, so each is tried alone, and only at the end
+        # `sums` has those of roots of sums: as they share symbols, the remainder after several
+        # divisions depends on their order, so each is tried alone, after all others
         self.relations, self.sums = dict[Ratio, Any](), dict[Ratio, Any]()
         self.nonzero = set[Ratio]()  # factors that are zero nowhere, whatever branch is taken
 

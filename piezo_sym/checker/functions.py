@@ -1,7 +1,7 @@
 """The checker's own table of functions: derivatives, and facts for a solver.
 
-x is the argument and y the value, a and b are those of another call of the same function.  A fact
-holds for all real numbers: "premise: fact", or with two premises.
+x and y are argument and value of a call, a and b those of another call of the same function.  A
+fact holds for all real numbers: "premise: fact", or "premise: premise: fact".
 """
 
 import re
@@ -19,7 +19,7 @@ KINKS = {
 }
 _RISING = "x < a: y < b; x > a: y > b; x >= a: y >= b; x <= a: y <= b"
 _EQUAL = "x <= a: x >= a: y <= b; x <= a: x >= a: y >= b"
-#: Facts on two values of a function, by the names that rows of `_SMOOTH` use.
+#: Facts that relate two calls of a function, by the names in the rows of `_SMOOTH`.
 PAIRS = {
     "odd": f"{_RISING}; x + a <= 0: y + b <= 0; x + a >= 0: y + b >= 0",
     "even": f"{_EQUAL}; {_EQUAL.replace('a', '-a')}",
@@ -27,7 +27,7 @@ PAIRS = {
     "log": f"x > 0: a > 0: {_RISING.replace('; ', '; x > 0: a > 0: ')}",
     "sin": f"{_EQUAL}; {_EQUAL.replace('a', '-a').replace('b', '-b')}",
 }
-#: Name, derivative, sign (that of x, or 1), facts on two values (a name in `PAIRS`), facts.
+#: Name, derivative, sign (that of x, or 1), facts on two calls (a name in `PAIRS`), facts on one.
 #: atan(1) is pi/4; pow is |x|**z, with the same z > 0 in both calls.
 _SMOOTH = """
 exp  | y            | 1 | exp  | y > 0; y >= 1 + x; x <= 0: y <= 1; x <= 0: y <= 1 + x + x**2/2;

@@ -1,13 +1,13 @@
 """The checker's own table of kinds.
 
-A row of `_TABLE` has the form (a hysteron is a store and a law in series), the domain of each field
-that names nodes, these fields, + if the imposed variable (co-state, input) is an across variable (a
-coupling without + gyrates), law fields with unit and letters, a state first, other fields, and the
-co-state of a store as a law of its state x.  A state of a `storage` has the kind ``=`` with its
-rate.  ``?`` marks optional fields; of the second node pairs of a coupling one is given, and its
-ratio has the unit of its domains.  A row of `_DOMAINS` has the reference, the node field of inertia
-and sources, the across and through variables with letter and unit, and the entries of `_WITHIN`,
-the kinds that each domain has.
+The columns of `_TABLE` are: name; form (a hysteron is a store and a law in series); the domain of
+each field that names nodes; these fields; + if the imposed variable (co-state, input) is an across
+variable (a coupling without + is a gyrator); law fields with unit and letters, a state first; other
+fields; the co-state of a store as a law of its state x.  A state of a `storage` has the kind ``=``
+plus its rate.  ``?`` marks optional fields; a coupling has one of its second node pairs, and its
+ratio the unit of the two domains.  The columns of `_DOMAINS` are: domain; reference; node field of
+inertia and sources; across and through variable with letter and unit; entries of `_WITHIN`, the
+kinds that every domain has.
 """
 
 from typing import NamedTuple
@@ -49,7 +49,7 @@ heat_source    | heat       | | | + |                             | into input |
 class Kind(NamedTuple):
     """A kind: `ends` are node fields with domains, `laws` law fields with unit and letters.
 
-    `fields` are all fields, and whether each is needed; in `costate` x is less the rest length.
+    `fields` has all fields, and whether each is required; x in `costate` is the state minus `rest`.
     """
 
     form: str
@@ -75,7 +75,7 @@ def _kind(row: str) -> tuple[str, Kind]:
     return name, Kind(form, ends, across == "+", units, fields, costate)
 
 
-#: Of capacitors and springs: the law of a slip, in the co-state and the rate that drives it.
+#: The field for the slip law of capacitors and springs, in the co-state and the driving rate.
 _SLIPS = {"E": ("; slip? A v:V i:A T:K", ""), "M": ("", "; slip? m/s f:N v:m/s T:K")}
 _MORE = {text: " heats? discontinuous?" * bool(text) for own in _SLIPS.values() for text in own}
 _ROWS = [row.split(", ") for row in _DOMAINS.strip().splitlines()]
@@ -83,7 +83,7 @@ for _row in _ROWS:
     for _text in _SLIPS.get(_row[0], ("", "")):
         _row += [_text, _MORE[_text]]
 _COSTATES = {r[0] + "+": (r[3], r[5]) for r in _ROWS} | {r[0] + "-": (r[6], r[8]) for r in _ROWS}
-#: By domain its reference, and the units of its through and across variable.
+#: The reference of each domain, and the units of its through and across variables.
 REFERENCES, UNITS = {r[0]: r[1] for r in _ROWS}, {r[0]: (r[8], r[5]) for r in _ROWS}
 _TEXT = "".join(_WITHIN.format(*row) for row in _ROWS) + _TABLE
 KINDS = dict(map(_kind, filter(None, _TEXT.splitlines())))

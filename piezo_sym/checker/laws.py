@@ -22,17 +22,17 @@ PLAIN = re.compile(
 OPERATORS = {ast.Mult: "*", ast.Div: "/", ast.USub: "neg", ast.UAdd: "+"}
 OPERATORS |= {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
-#: Operations in every algebra: numbers, rational functions, power series.
+#: Operations that apply to numbers, rational functions and power series alike.
 ARITHMETIC: dict[str, Callable[..., Any]] = {"*": operator.mul, "/": operator.truediv}
 ARITHMETIC |= {"neg": operator.neg, "+": lambda *terms: sum(terms[1:], terms[0])}
-#: The derivatives of operations on x and z, dx and dz being those of x and z.
+#: The derivatives of operations on x and z; dx and dz are the derivatives of x and z.
 SLOPES = {"*": "dx*z + x*dz", "/": "dx/z - x*dz/z**2", "neg": "-dx"}
 _TEXTS = KINKS | {name: known.slope for name, known in SMOOTH.items()}
 ARGUMENTS = {name: 1 + ("z" in text) for name, text in _TEXTS.items() if text}
 
 
 class InputError(Exception):
-    """The checker does not accept a spec, or what is stated of it; one line says why."""
+    """The checker does not accept a spec or its proofs; the message says why in one line."""
 
 
 class Node(NamedTuple):
@@ -143,7 +143,7 @@ def _swapped(node: Node, old: Node, new: Node) -> Node:
 
 
 def cancelled(law: Node, factor: Node) -> Node:
-    """Return products in a sum without a factor that they also divide by, or else the same tree."""
+    """Return a sum of products, a factor cancelled with an equal divisor, or else the same tree."""
     if law.op in ("+", "neg"):
         return Node(law.op, tuple(cancelled(term, factor) for term in law.args))
     sides = _factors(law)

@@ -26,7 +26,7 @@ UNKNOWN = ("through", "across", "potential")
 
 
 class Branch(NamedTuple):
-    """A branch: its element and lane, its role, its nodes, and whether it imposes an across one."""
+    """A branch: element and lane, role, nodes, and whether it imposes its across variable."""
 
     element: str
     lane: int
@@ -45,7 +45,7 @@ class SingularError(Exception):
 
 
 class Flows(NamedTuple):
-    """A solved network, by (element, lane); of each port the output and its conjugate input."""
+    """A solved network, by (element, lane); `ports` has each port's output and conjugate input."""
 
     letters: dict[Slot, Any]
     outputs: dict[Slot, Any]
@@ -93,7 +93,7 @@ def flows(spec: Spec, counts: Mapping[str, int], algebra: Any) -> Flows:
 
 
 def relations(spec: Spec, counts: Mapping[str, int], algebra: Any) -> list[Form]:
-    """Return the combinations of givens that the laws force to be zero."""
+    """Return the combinations of given quantities that the laws of the network force to be zero."""
     return [*filter(None, solved(_equations(spec, _all_branches(spec, counts), algebra))[2])]
 
 
@@ -120,7 +120,7 @@ def _all_branches(spec: Spec, counts: Mapping[str, int]) -> list[Branch]:
 
 
 def _heat(spec: Spec, algebra: Any, found: Flows) -> None:
-    """Add to the rates of entropies the heats, and the inputs lam*(T_e/T - 1) or P/T."""
+    """Add to entropy rates the heats of laws over T, and the inflows lam*(T_e/T - 1) or P/T."""
     T = {body.name: algebra.given("T", body.name, 0) for body in spec.of("body")}
     for slot, W in found.outputs.items():
         (body,) = spec.elements[slot[0]].bodies
@@ -193,7 +193,7 @@ def _law(element: Element, branch: Branch, algebra: Any) -> Form:
 
 
 def _choice(n: int, row: Form) -> Choice:
-    """Return the best unknown to solve a row for: by factor 1 or -1, then kind, then row length."""
+    """Return the best unknown to solve a row for: factor 1 or -1 first, then across variables."""
     known = [(x, factor) for x, factor in row.items() if x[0] in UNKNOWN and factor != 0]
     size = len(row), n
     ranks = [((int(f not in (1, -1)), int(x[0] != "across"), *size), x) for x, f in known]
@@ -222,7 +222,7 @@ def solved(
                 factor = form.pop(label)
                 for key, value in found[label].items():
                     form[key] = form[key] + factor * value if key in form else factor * value
-                    if (form[key] == 0) is True:  # for an enclosure of zero it is no bool
+                    if (form[key] == 0) is True:  # an enclosure compares as no bool
                         del form[key]
                 if name in rows:
                     choices[name] = choose(name, form)

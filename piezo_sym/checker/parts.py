@@ -9,12 +9,12 @@ from typing import Any
 from .kinds import Kind
 from .laws import need, parse
 
-#: By the size field of a stop: the kind of its store, the letters of its effort and its rate.
+#: For each size field of a stop: the kind of its store, and the letters of effort and rate.
 SIZES = {"stiffness": ("spring", "f", "v"), "capacitance": ("capacitor", "v", "i")}
 
 
 def stem(name: str) -> str:
-    """Return an element's name in the spec: for one state of a storage, the storage's."""
+    """Return the name of an element in the spec; for one state of a storage, the storage's name."""
     return name.partition(".")[0]
 
 

@@ -21,7 +21,7 @@ from .spec import Element, Spec
 from .system import Finding
 
 Key = tuple[str, str]
-#: The row that must be stated and is not checked; `UNSTATED` rows are checked and never stated.
+#: STATED: the row that is read but not checked; `UNSTATED` rows are checked though never stated.
 STATED, MOST_PIECES, MOVING, UNSTATED = "program", 400, ("z", "r", "x", "T"), ("domain", "system")
 
 
@@ -110,7 +110,7 @@ class _Audit:
         self.done[name, owner] = reason
 
     def _unlike(self, subject: str) -> str:
-        """Return what differs from the network, or ''."""
+        """Return the first difference between the published system and the network, or ''."""
         found = self.found.reasons.get(subject, "")
         for (about, what), own in self.found.branched.items():
             if not found and about == subject and not vanishes(*own, self.prover):
@@ -130,7 +130,7 @@ class _Audit:
 
     @staticmethod
     def _bent(trees: list[Node]) -> list[Node]:
-        """Return the trees with choices by states, letters, rates or temperatures."""
+        """Return the trees in which a choice depends on states, letters, rates or temperatures."""
         kinks = [(t, n) for t in trees for n in laws.walk(t) if n.op in ("if", *KINKS)]
         # a table of two knots, with 5 arguments, is a line
         kinks = [(t, n) for t, n in kinks if n.op != "table" or len(n.args) > 5]
@@ -215,9 +215,9 @@ def _continuous(trees: list[Node]) -> Iterator[Claim]:
 class _Closed:
     """A law on the closed cells of its choices: if it equals its branch on each, it is continuous.
 
-    Each comparison of moving symbols becomes a choice b of a side, free where both sides are equal;
-    it is assumed that the cell is not empty.  The parts of a condition are shown to have values
-    before the condition is used.
+    Each comparison of moving symbols is replaced by the sign of a new symbol b, which is free where
+    both sides are equal, so that either branch is taken there.  Conditions are used only after
+    their parts are shown to have values.
     """
 
     def __init__(self) -> None:

@@ -1,10 +1,10 @@
-"""Laws that vanish, one branch at a time: slopes of energies minus laws, jumps of laws.
+"""Differences that vanish, one branch at a time: slopes of energies minus laws, jumps of laws.
 
-Input: a law, and a `Prover`; of a slope, the state.  Output: whether it vanishes on every branch,
-a slope but for single values of the state.  At such an edge a continuous energy has the slope of a
-continuous law if it has it on both sides; other claims show that neither jumps.  A domain that
-keeps a state at one value leaves no sides, so its conditions on the state are not used to find
-edges.
+Input: a difference, and a `Prover`; for a slope, also the states.  Output: whether it is zero on
+every branch; for a slope, branches at a single value of the state (edges) are left out.  There a
+continuous energy has the slope of a continuous law if it has it on both sides; other claims show
+that neither jumps.  A domain that fixes a state has no sides, so its conditions on the state are
+not used to find edges.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -23,13 +23,13 @@ Test: TypeAlias = Callable[[Node, Path], bool]
 
 
 def vanishes(difference: Node, states: Iterable[Any], prover: Prover) -> bool:
-    """Return whether a difference is zero on every branch that is more than an edge for states."""
+    """Return whether a difference is zero on every branch that does not fix one of the states."""
     aside = Prover([c for c in prover.domain if set(states).isdisjoint(symbols(c))])
     return _on_branches(difference, (), prover, lambda _, path: any(_edges(path, states, aside)))
 
 
 def equal(claim: Node, path: Path, prover: Prover) -> bool:
-    """Return whether two laws are equal on each branch; on an edge, at the state that it fixes."""
+    """Return whether two laws are equal on each branch; a branch may fix the value of a state."""
     difference = build("x - z", x=claim.args[0], z=claim.args[1])
 
     def on_edge(tree: Node, here: Path) -> bool:

@@ -28,10 +28,10 @@ Symbol = tuple[str, str]
 class Element(NamedTuple):
     """An element: `laws` by field, `costate` dU/dx, a dissipative `law` in the letter `letter`.
 
-    It imposes its `across` variable or not, and the opposite if its store `follows` others.  It
-    heats, conducts between, or reads T of its `bodies`.  `lanes` is its bank with the size, `chain`
-    the ends between which lanes are in series.  A node ("T", body) has the potential T, and draws
-    entropy from the body.
+    If `across`, it imposes its across variable, else its through variable; a store that `follows`
+    other stores imposes the other one.  `bodies` are those that it heats, conducts between, or
+    reads T of.  `lanes` is (bank, size), `chain` the end nodes of lanes in series.  A node
+    ("T", body) has the potential T, and draws entropy from the body.
     """
 
     name: str
@@ -54,8 +54,8 @@ class Element(NamedTuple):
 class Spec(NamedTuple):
     """A spec: `words` are the meanings of names in [domain], `initial` is by element.
 
-    `states` is the element of each state, `lists` the bank of each parameter with a value per lane,
-    `faults` are those of units.
+    `states` has the element of each state, `lists` the bank of each parameter with a value per
+    lane, `faults` the faults of units.
     """
 
     parameters: Mapping[str, tuple[Fraction, ...]]

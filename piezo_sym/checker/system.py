@@ -2,10 +2,10 @@
 
 Input: a `Spec` and the "system" of ``proofs.json``.  Output: a `Finding`.  A lane of a bank draws
 the current of its own inductor, a state, from shared nodes; so shared rates have sums over lanes
-with coefficients free of counts, and products of two sums at most (heats).  An identity in which at
-most two sums are multiplied, in the row of one lane or of none, is about three lanes at most.  So a
+with coefficients free of counts, and products of at most two sums (heats).  An identity with at
+most two sums in a product, in the row of one lane or of none, involves at most three lanes.  So a
 bank has three lanes here, each with a symbol for the number of lanes like it: then sums, and
-functions of sums, are equal only if they are for all counts.
+functions of sums, are equal only if they are equal for all counts.
 """
 
 from collections.abc import Mapping
@@ -71,9 +71,9 @@ class _Published:
 class Finding:
     """The comparison of a published system with the laws of its network.
 
-    `reasons` are by subject ("system", "energy"); `divisors` must not be zero; under `values` the
-    energy, the sum of `terms`, has a value; `letters` are functions of states; `branched` are, by
-    subject and name, the differences that may be zero on each branch, and states with edges.
+    `reasons` says why a subject ("system", "energy") differs; `divisors` must not be zero; `values`
+    are claims under which the energy, the sum of `terms`, has a value; `letters` are functions of
+    states; `branched` has, by subject and name, differences to compare by branches, and states.
     """
 
     def __init__(self, spec: Spec, system: Any) -> None:
@@ -163,7 +163,7 @@ class Finding:
         for name, (y, inflow) in own.ports.items():
             given = self.published(self.text.outputs[name], {})
             self._equal("system", given, y, f"output of {name}")
-            power += y * inflow  # what is published is shown to be the same
+            power += y * inflow  # the published ones are shown to be equal
         for (name, lane), rate in own.rates.items():
             element = self.spec.elements[name]
             given = self.published(self.text.rates[element.state], {self.banks.get(name, ""): lane})
@@ -175,7 +175,7 @@ class Finding:
     def _equal(self, subject: str, given: Ratio, own: Ratio, what: str, slope: Any = ()) -> None:
         """Compare two expressions; if they may still agree branch by branch, keep the difference.
 
-        Of a `slope` that is a difference of trees in symbols of the spec, with its state.
+        `slope`, if given, is that difference as a tree in symbols of the spec, and the state.
         """
         if self.field.is_zero(given - own):
             return

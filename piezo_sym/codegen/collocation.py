@@ -43,7 +43,7 @@ class Stage:
     taken: frozenset[str]  # every name in use
     #: Functions whose sign changes where an integrand of `means` has a kink.
     bends: tuple[OutputRow, ...] = ()
-    costates: tuple[OutputRow, ...] = ()  # dU/dx of each state, of some as given means
+    costates: tuple[OutputRow, ...] = ()  # dU/dx of each state; some are given means
 
 
 @final
@@ -90,7 +90,7 @@ def collocation_of(iphs: IPHS, known: Quantities | None = None) -> Collocation:
         item for item in q.defined if item.note == COSTATES and not is_affine(item.value, states)
     )
     elements, own = iphs.model.elements.values(), stage_quantities(q, paths)
-    rates = rates_of(own)  # of slopes, too, where no path tells their quantities apart
+    rates = rates_of(own)  # also for slopes, if no path makes them differ
     smooth = slope_quantities(q, paths)
     return Collocation(
         means=tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means),

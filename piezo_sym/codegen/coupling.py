@@ -152,7 +152,7 @@ class _Builder:
         )
 
     def _bank(self, name: str) -> tuple[Bank, list[Expr]]:
-        """Return a bank, and its slopes: in a lane, by shared unknowns, in shared equations."""
+        """Return a bank and its slopes: in a lane, by shared unknowns, and in shared equations."""
         states = tuple(n for n, bank in enumerate(self.bank_of) if bank == name)
         in_lane = {(e.row, e.col): e.value for e in self.entries}
         by_shared: dict[Place, Expr] = {}

@@ -104,7 +104,7 @@ def elements_of(
     words |= in_words({"answer": answers})
     found = list[ElementRow]()
     for entry in element_rows(iphs):
-        spelled = words.keys().isdisjoint(names(entry.value))  # a value without words stays so
+        spelled = words.keys().isdisjoint(names(entry.value))  # nothing to replace
         found.append(entry if spelled else entry._replace(value=inserted(entry.value, words)))
     return tuple(found), tuple(named)
 

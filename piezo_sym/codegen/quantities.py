@@ -45,7 +45,7 @@ class Quantities:
     heats: tuple[Expr, ...]
     limits: tuple[Limit, ...]  # the conditions of the domain
     taken: frozenset[str]  # every name in use
-    #: The bank of each given name, one that is no quantity, with a value per lane.
+    #: The bank of each name with a value per lane that is given, not defined as a quantity.
     given: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property

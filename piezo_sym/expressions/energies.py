@@ -141,7 +141,7 @@ class _Edge:
     positive: frozenset[str]
 
     def odd(self, otherwise: Otherwise | None) -> Expr | None:
-        """Return the antiderivative of a law that is odd about the edge, as one of the distance."""
+        """Return the antiderivative of a law that is odd about the edge, or None if it is not."""
         above, below = self._outward()
         if above != below:
             return None
@@ -193,7 +193,7 @@ class _Edge:
         return inserted(one, {}), inserted(other, {})
 
     def _shifted(self, node: Expr) -> Expr:
-        """Return the law as a function of the difference, which takes over the name."""
+        """Return the law as a function of the difference, for which `name` stands then."""
         slope = slope_of(node, self.name)
         if slope is None:
             return rebuild(node, self._shifted)

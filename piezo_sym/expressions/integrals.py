@@ -95,7 +95,7 @@ def _of_degree(node: Expr, name: str, base: Expr) -> Expr:
 
 
 def _degree(node: Expr, name: str, base: Expr) -> tuple[Fraction, tuple[Expr, ...]]:
-    """Return n of a product c*b**n of a base b: a number, and the terms that names add to it.
+    """Return the exponent n of a product c*b**n of a base b: a number, and its terms with names.
 
     Raises `NoFormError` if it is no such product.
     """

@@ -83,7 +83,7 @@ def slope_at(node: Expr, name: str, place: Expr) -> Expr | None:
 def _without(
     factor: Expr, above: list[Expr], below: list[Expr]
 ) -> tuple[list[Expr], list[Expr]] | None:
-    """Return the factors of a quotient times a factor that cancels in it, or in terms of a sum."""
+    """Return numerator and denominator of a quotient times `factor`, which cancels, or None."""
     if factor in below:
         below = [*below]
         below.remove(factor)
@@ -97,7 +97,7 @@ def _without(
 
 
 def _terms(node: Expr) -> tuple[Expr, ...]:
-    """Return the terms of a sum; nothing of what is no sum."""
+    """Return the terms of a sum; an empty tuple for any other tree."""
     if isinstance(node, Neg):
         return tuple(map(neg, _terms(node.arg)))
     return node.terms if isinstance(node, Add) else ()

@@ -47,10 +47,10 @@ class Claim:
     #: id, element: of the row.
     id: str
     element: str
-    #: Its inequalities; none for rows that laws have values, or do not jump.
+    #: The inequalities that the row claims; none for `welldef` and `continuous`.
     says: tuple[Inequality, ...] = ()
     where: tuple[Cmp, ...] = ()  # conditions under which the row applies
-    #: zero, equal: inputs that it sets to zero, and those that it sets equal.
+    #: zero, equal: inputs that the row assumes to be zero, and inputs it assumes to be equal.
     zero: tuple[str, ...] = ()
     equal: tuple[str, ...] = ()
 
@@ -103,9 +103,9 @@ def _conducts(probe: Probe, element: str) -> Inequality:
 
 
 def _balance(probe: Probe, name: str, bodies: Collection[str], factor: Expr) -> Inequality:
-    """Return the entropy gain of bodies, times a factor, less the loss of the environment.
+    """Return the claim that factor*dS/dt of `bodies` is at least what their environments give.
 
-    With the factor 1 the loss is of entropy, else of heat.
+    Environments give entropy if the factor is 1, else heat.
     """
     circuit = probe.iphs.circuit
     rates = [Sym(f"rate {b.state}") for placed, b in circuit.of(Body) if placed.element in bodies]
@@ -122,7 +122,7 @@ def _balance(probe: Probe, name: str, bodies: Collection[str], factor: Expr) -> 
 
 
 def _coldest(probe: Probe, element: str) -> Claim:
-    """Return the claim that the coldest body gains entropy."""
+    """Return the claim that a body gains entropy while all that it touches is warmer."""
     circuit, hot = probe.iphs.circuit, Sym(f"temperature {element}")
     own = [(placed.element, port) for placed, port in circuit.of(Exchange) if port.body == element]
     where = [Cmp("<", hot, Sym(port.input)) for _, port in own]

@@ -21,9 +21,9 @@ from piezo_sym.falsify.floats import Row
 from piezo_sym.falsify.probe import Probe
 from piezo_sym.falsify.space import Array, Space
 
-#: Precision of enclosures: the numbers of a point may be 600 decades apart.
+#: Precision of enclosures [bit]: the numbers of a point may be 600 decades apart.
 BITS = 4096
-#: Points with more lanes are left out; banks of two lanes are attacked as well.
+#: Points with more lanes per bank are left out, as rows are attacked with two lanes as well.
 MOST_LANES = 64
 #: Rationals with more bits become enclosures.
 MOST_BITS = 40_000

@@ -132,7 +132,7 @@ def _plain(value: Any, lost: Any = False, size: Any = None) -> Approx:
 
 
 def _each(operation: Callable[..., Any], a: Approx, b: Approx) -> Approx:
-    """Return an operation on values and sizes; a choice also selects where there is no value."""
+    """Return an operation applied to values and sizes; a choice is applied to `lost`, too."""
     chosen = isinstance(operation, partial)
     lost = operation(a.lost, b.lost) if chosen else a.lost | b.lost
     return Approx(operation(a.value, b.value), operation(a.size, b.size), lost)

@@ -24,11 +24,11 @@ from piezo_sym.falsify.space import Array, Evaluation, Mask, Space
 from piezo_sym.iphs import IPHS
 
 POINTS = 100_000
-#: Lanes per bank of a point; most lanes of the spec's own values that are tried.
+#: Lanes per bank of a point; the most lanes for which the spec's own values are tried.
 LANES, MOST_LANES = 2, 512
-#: Worst points kept of each kind, those checked exactly, steps from each in a descent, descents.
+#: Worst points kept per search, and those checked exactly; points tried near each, and how often.
 KEPT, CHECKED, CHILDREN, DESCENTS = 8, 4, 24, 8
-#: Key of a zero where a row says > 0: it may be rounding, so it is evaluated exactly.
+#: Rank of a value 0 where the row claims > 0: it may be rounding, so it is evaluated exactly.
 ZERO = -1e-300
 
 
@@ -40,8 +40,8 @@ class Attack:
     #: id, element: of the row.
     id: str
     element: str
-    #: The number of points inside the domain at which it held, rounded down to one digit, as it is
-    #: published and a few points may fall outside on another processor.
+    #: The number of points inside the domain at which the row held, rounded down to one digit: on
+    #: another processor a few of the points may lie outside, and the number is published.
     points: int
     #: Values by name at a point where the row is false in floats, though not exactly, or None.
     worst: Mapping[str, str] | None = None
@@ -50,7 +50,7 @@ class Attack:
 @final
 @dataclass(eq=False)
 class Track:
-    """The number of points tried for a claim, and the worst points by the way they were found."""
+    """The number of points tried for a claim, and the worst points that each search found."""
 
     claim: Claim
     points: int = 0
@@ -87,7 +87,7 @@ class Track:
         return np.where(applies, least, 2)
 
     def _keep(self, kind: str, seen: Evaluation, key: Array) -> None:
-        """Keep the worst points found in one way."""
+        """Keep the worst points that one search found."""
         known = self.worst.setdefault(kind, [])
         place = np.flatnonzero(key < (known[-1][0] if len(known) == KEPT else np.inf))
         first = place[np.argsort(key[place], kind="stable")[:KEPT]]
@@ -152,7 +152,7 @@ class Hunt:
             track.see(kind, space.at(changed if bound else changed[:, space.at(changed).inside]))
 
     def _blocks(self) -> Iterator[tuple[str, Space, Array]]:
-        """Yield blocks of points inside the domain, with the way they were found."""
+        """Yield blocks of points inside the domain, with the name of the search that found them."""
         draw, own = self.draw, self.spec.own()
         yield "own", self.spec, own[:, self.spec.at(own).inside]
         total = draw.inside(draw.known)
@@ -190,7 +190,7 @@ class Hunt:
                 yield "descended", self.space, self.draw.inside(moved)
 
     def _judged(self, track: Track, exact: Exact) -> Attack:
-        """Return the result for a row, its suspicious points having been evaluated exactly."""
+        """Return the result for a row, after exact evaluation at its suspicious points."""
         claim, rounding = track.claim, None
         most = CHECKED if claim.says else KEPT
         for key, space, point in chain(*(worst[:most] for worst in track.worst.values())):
@@ -199,7 +199,7 @@ class Hunt:
                 raise self._contradiction(claim, value, space.words(point))
             if key < ZERO and claim.says and not rounding:
                 plain = not space.at(point[:, None]).out_of_range[0]
-                rounding = (space, point) if plain else None  # an underflow is not reported
+                rounding = (space, point) if plain else None  # not if products overflow
         if claim.id == "continuous":
             found = jump(claim, self.space, self.sides, exact)
             if found:

@@ -23,13 +23,13 @@ from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Evaluation, 
 
 #: Relative change of a law between neighbouring floats that is no jump.
 JUMP = 1e-6
-#: Number of kinks with a larger change that are evaluated exactly.
+#: Number of kinks, those with the largest changes, that are evaluated exactly.
 MOST_CHECKED = 6
-#: A difference that has shrunk to this part of the largest is no jump.
+#: A difference that has shrunk to this fraction of its largest value is no jump.
 FADED = fmpq(1, 10**6)
-#: Relative distances of the two sides; part of the difference at the first left at the second.
+#: Relative distances of the two sides; fraction of a jump that must be left from NEAR to NEARER.
 NEAR, NEARER, SAME = Fraction(1, 10**40), Fraction(1, 10**80), fmpq(9, 10)
-#: Relative error of a kink found in floating point.
+#: Relative errors of a kink found in floating point: its sides are moved apart by these, in turn.
 WIDER = (Fraction(0), Fraction(1, 10**15), Fraction(1, 10**12))
 Values = list[Any]
 
@@ -45,7 +45,7 @@ def jump(
         for n in np.argsort(-big, kind="stable")[:MOST_CHECKED]:
             if big[n] > JUMP:
                 ends = sides.low.points[:, n], sides.high.points[:, n]
-                change = float(leap[n]) if leap[n] < LARGEST else 0.0  # any, beside a pole
+                change = float(leap[n]) if leap[n] < LARGEST else 0.0  # beside a pole: any change
                 value = _confirmed(claim, space, *ends, change, exact)
                 if value:
                     return value, ends[1]
@@ -63,9 +63,9 @@ class Sides:
 
 
 def sides_of(space: Space, roots: Roots) -> Sides:
-    """Return points on both sides of kinks; all rows use the same."""
+    """Return points on both sides of kinks, which all rows share."""
     step = roots.high - roots.low
-    # on an edge itself either branch may be taken
+    # one float further than `high`: on an edge itself either branch may be taken
     low, high = (space.at(roots.at(value)) for value in (roots.low, roots.high + step))
     near = space.kinks[roots.edge] & (roots.column >= space.inputs_at)
     near &= np.abs(roots.high) < EXTREME
@@ -94,7 +94,7 @@ def _confirmed(
     def there(value: Fraction) -> Point:
         return Point(exact, space, [*point[:column], value, *point[column + 1 :]])
 
-    # laws of others may jump on purpose at the same place
+    # of this element alone: the laws of other elements may jump on purpose at the same point
     laws = [space.probe.laws[what, claim.element] for what in space.probe.kinds[claim.element]]
 
     def values_at(value: Fraction) -> Values:
@@ -115,7 +115,7 @@ def _confirmed(
 def _narrowed(
     values_at: Callable[[Fraction], Values], low: Fraction, high: Fraction
 ) -> tuple[Any, tuple[Fraction, Fraction]] | None:
-    """Return the difference on two approaching sides, and the sides; None if it fades."""
+    """Return the difference on two sides that approach a kink, and the sides; None if it fades."""
     scale, gaps = max(abs(low), abs(high)), []
     one, other = values_at(low), values_at(high)
     gap = most = _gap(one, other)
@@ -147,9 +147,9 @@ def _gap(one: Values, other: Values) -> Any:
 
 
 def _least(gap: Any) -> Any:
-    """Return the least absolute value in an enclosure, as a number of FLINT's.
+    """Return the least absolute value in an enclosure, as a FLINT number.
 
-    A rate beside the kink may be 2**(10**13): that many bits are in no rational.
+    A rate beside the kink may be 2**(10**13), which has too many bits for a rational.
     """
     if isinstance(gap, fmpq):
         return abs(gap)

@@ -15,15 +15,15 @@ import numpy as np
 
 from piezo_sym.falsify.space import LARGEST, LEAST, Array, Index, Space
 
-#: With fewer points than these, drawn ones are added to those that walks start from.
+#: If fewer points than this are known, drawn points are added to those from which walks start.
 FEW = 1000
 WALKS = 40
-#: A root at zero is bracketed by plus and minus this, as products of smaller values may underflow.
+#: A root at zero is bracketed by -TINY and TINY, as products of smaller values may underflow.
 TINY = 1e-280
 TABLE = 8192
 #: Points evaluated beside a root.
 BESIDE = 24
-#: Edges are solved for from known points, then from points on edges; most roots per edge.
+#: Searches for zeros of edges, from known points and then from points on edges; most per edge.
 STAGES = (("kinks", 16), ("corners", 12))
 FAR = (-290, -100, -30, -15, -9, -6)
 DECADES = (*FAR, -4, -3, -2, -1, -0.3, 0, 0.3, 1, 2, 3, 4, 6, 9, 15, 30, 100)
@@ -143,7 +143,7 @@ class Draw:
         return Roots(roots.edge, roots.column, roots.base, *ends)
 
     def learn(self, points: Array) -> None:
-        """Add values on edges to the scales, and some points to the starting points."""
+        """Add values found on edges to the scales of their columns, and some points to `known`."""
         roots = self.roots[-1]
         for column, value in zip(roots.column.tolist(), np.abs(roots.high).tolist(), strict=True):
             if 1e-100 < value < 1e100 and len(self.scales[column]) < 64:
@@ -188,7 +188,7 @@ class Draw:
         return self._paired(points)
 
     def _paired(self, points: Array) -> Array:
-        """Set some values equal, or close, to others of equal dimension."""
+        """Set some values equal, or close, to values of equal dimension in other columns."""
         pairs, rng = self.space.pairs, self.rng
         if len(pairs):
             place = np.flatnonzero(rng.random(points.shape[1]) < 0.2)

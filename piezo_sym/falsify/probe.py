@@ -79,11 +79,11 @@ class Probe:
     edges: tuple[Edge, ...]  # expressions near whose zeros rows may be false
 
     def law(self, what: str, element: str) -> Row:
-        """Return a law, written out if it is a name."""
+        """Return a law; a law that is a mere name is replaced by its definition."""
         return self.written(self.laws[what, element])
 
     def behind(self, tree: Expr) -> set[str]:
-        """Return the names in a tree and, without results of the module, in their definitions."""
+        """Return the names in a tree and in their definitions; results of the module stay names."""
         found, left = set[str](), [*names(tree)]
         while left:
             if (name := left.pop()) not in found:
@@ -100,7 +100,7 @@ class Probe:
 
     @cached_property
     def kinds(self) -> Mapping[str, list[str]]:
-        """The kinds of those laws of each element that may jump."""
+        """The kinds of each element's laws that may jump: all but efforts and slopes."""
         found: dict[str, list[str]] = {}
         for what, element in self.laws:
             found.setdefault(element, []).extend([what] if what not in {"effort", "slope"} else [])
@@ -108,7 +108,7 @@ class Probe:
 
     @cached_property
     def of_element(self) -> Mapping[str, list[Row]]:
-        """The laws of each element but for efforts, written out if they are names."""
+        """The laws of each element, without efforts; mere names are replaced by definitions."""
         found: dict[str, list[Row]] = {}
         for (what, element), row in self.laws.items():
             found.setdefault(element, []).extend([self.written(row)] if what != "effort" else [])
@@ -122,7 +122,7 @@ class Probe:
         return tuple(dict.fromkeys(calls))
 
     def written(self, row: Row) -> Row:
-        """Return the definition of a row that is a name; another row as it is."""
+        """Return a row as it is, or its definition if it is a mere name."""
         tree, _ = row
         return self.defined.get(tree.name, row) if isinstance(tree, Sym) else row
 

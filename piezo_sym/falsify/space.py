@@ -27,15 +27,15 @@ Index = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 Key = TypeVar("Key")
 
-#: Bounds on the absolute values of a point other than 0; beyond EXTREME products overflow.
+#: Bounds on the magnitudes of a point's nonzero values; above EXTREME their products overflow.
 LEAST, LARGEST, EXTREME = 1e-300, 1e300, 1e30
 #: A power with a smaller exponent hardly changes over tens of decades, and seems to jump at zero.
 STEEP = 0.01
-#: States times points that the module evaluates together; its `rhs` splits larger arrays.
+#: Most numbers (states times points) in one call of the module; its `rhs` splits larger arrays.
 BLOCK = 100_000
-#: States times points at which trees are evaluated together, to save calls of NumPy.
+#: Most numbers (states times points) in one evaluation of trees: many, to save calls of NumPy.
 TREES = 3 * BLOCK
-#: Fewest points evaluated together; most points times the square of the number of columns.
+#: Fewest points in one evaluation; the most points in all, times the square of their columns.
 FEWEST, MOST = 1024, 10**9
 
 
@@ -123,7 +123,7 @@ class Space:
 
     @cached_property
     def edges_by_column(self) -> Mapping[str, tuple[int, ...]]:
-        """The numbers of the edges that may depend on each column; all may through the module."""
+        """The indices of the edges that depend on each column; module results depend on all."""
         found: dict[str, tuple[int, ...]] = {}
         for n, edge in enumerate(self.probe.edges):
             behind = self.probe.behind(edge.tree)

@@ -40,7 +40,7 @@ from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import greater, starts
 
 Point = Mapping[str, Value]
-#: Values of a state that are looked at, times its own start and the parameters of its energy.
+#: Factors that give trial values of a state, from its initial value and the energy's parameters.
 TIMES = (Fraction(1), Fraction(-1), Fraction(1, 2), Fraction(-1, 2), Fraction(2), Fraction(-2))
 NEAR = Fraction(1, 10**12)
 
@@ -139,10 +139,10 @@ def _integral(element: str, port: Storage | Body, positive: frozenset[str]) -> E
 def _with_values(energy: Expr, state: str, circuit: Circuit) -> Expr:
     """Return an energy with log(-a) in place of log(a) where a < 0 in the domain.
 
-    1/(q - a) integrates to log(q - a) as well as to log(a - q), of one slope; integration does not
-    know which has a value.  Nothing rests on the choice: rows welldef and energy show the rest.
-    That is judged at some points, on each branch at those that lie on it; they satisfy the
-    conditions on parameters, inputs and this state. Where signs differ, the first decides.
+    1/(q - a) integrates to log(q - a) as well as to log(a - q), which have the same slope, but only
+    one of them has a value.  The sign is taken from trial points that satisfy the conditions on
+    parameters, inputs and this state, on each branch from the points on it; if signs differ, the
+    first point decides.  No proof rests on the choice: rows welldef and energy check the result.
     """
     if not any(isinstance(n, Call) and n.function == "log" for n in walk(energy)):
         return energy

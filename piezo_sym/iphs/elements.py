@@ -198,7 +198,7 @@ class _Elements:
 
 
 def follower_rates(iphs: IPHS) -> tuple[Expr, ...]:
-    """Return the rates of the stores that follow the states of others."""
+    """Return the rates of the own states of stores that follow other stores."""
     followers = {m.element: m for j in iphs.junction.joints for m in j.followers}
     slots = iphs.junction.couplings["R"].cols
     return tuple(_joined_rate(iphs, followers[slot.label]) for slot in slots)

@@ -55,7 +55,7 @@ def causal_laws(circuit: Circuit, symbols: SymbolTable) -> Laws:
 def _turned_resistor(
     laws: Laws, singular: SingularError, turned: set[str]
 ) -> tuple[Placed, DissipativePort] | None:
-    """Return the first resistor in a contradiction that can still be turned, turned round."""
+    """Return the first resistor in a contradiction that can be turned, in its other causality."""
     for relation in singular.relations:
         for kind, number in map(term_of, relation):
             if kind == "W":
@@ -68,7 +68,7 @@ def _turned_resistor(
 
 
 def dependent_states(laws: Laws, singular: SingularError) -> set[str]:
-    """Return the states of the stores that follow others, as their co-states depend on them.
+    """Return the states of the stores whose co-states depend on those of other stores.
 
     In the order of the spec, a store follows if its co-state is a combination of earlier ones; it
     then imposes its rate.  Raises `NetworkError` if the laws do not fix the network otherwise, or a

@@ -43,7 +43,7 @@ from piezo_sym.spec.elements.ports import (
 #: Coefficients combined in a solution, times the number of ratios: about half a minute.
 MOST_WORK = 20_000_000
 
-#: An answer: the part that is the same for every lane, and that of the branch's own lane.
+#: The answer of a branch: the part equal in all lanes, and the part in its own lane's givens.
 Answer = tuple[Form, Form]
 #: A port of an input.
 Driven = Source | Exchange | HeatInput
@@ -127,9 +127,9 @@ class Laws:
 
     @cached_property
     def answers(self) -> dict[tuple[str, int], Answer]:
-        """The answer of each branch, by the given that it imposes, and two of each coupling n.
+        """The variable that each branch does not impose, by the given that it imposes.
 
-        These are ("C", 2*n), its across_1 (of a transformer: through_1), and ("C", 2*n + 1), its
+        Coupling n has two: ("C", 2*n) is across_1 (of a transformer: through_1), ("C", 2*n + 1) is
         across_2. Raises `SingularError` if the laws have no, or more than one, solution; `refusals`
         names the elements.  Raises `NetworkError` if a bank fixes a node that it shares.
         """
@@ -189,7 +189,7 @@ class Laws:
                 yield Equation(across, {})
 
     def _flows(self, bank: str | None) -> list[tuple[str, Any]]:
-        """Return the unknown through variables of a bank's, or of the other, branches."""
+        """Return the unknown through variables of a bank's branches; None: of those in no bank."""
         own = (e for e in self.edges if e.placed.bank == bank)
         return [e.unknown for e in own if e.imposes is PowerVariable.ACROSS]
 
@@ -202,7 +202,7 @@ class Laws:
         equations = [Equation(row.left, _negated(row.right)) for row in inner.values()]
         equations += list(self._constraints(bank))
         unknowns = [("e", node) for node in inner] + self._flows(bank)
-        for equation in equations:  # to a lane, shared nodes are givens
+        for equation in equations:  # in a lane's equations, shared nodes are givens
             for label in [label for label in equation.left if label not in unknowns]:
                 accumulate(equation.right, label, -equation.left.pop(label))
         return self._solve(equations, unknowns)

@@ -34,7 +34,7 @@ def branches(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
 
 
 def _chained(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
-    """Yield, as `branches` does, the links between the ends of each chain and its lanes."""
+    """Yield the links between the ends of each chain and its lanes, in the form of `branches`."""
     members = {
         placed.bank: (placed.element, placed.port) for placed in circuit.ports if placed.bank
     }
@@ -52,7 +52,7 @@ def is_inner(node: str) -> bool:
 
 
 def inner_nodes(circuit: Circuit) -> frozenset[str]:
-    """Return the nodes that each lane of a bank has for itself: no branch outside meets there."""
+    """Return the nodes that each lane of a bank has for itself: no branch outside is connected."""
     owners = {placed.element: placed.bank for placed in circuit.ports}
     users: dict[str, set[str | None]] = {}
     for element, branch, _ in branches(circuit):

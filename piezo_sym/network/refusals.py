@@ -72,7 +72,7 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
         expected, remedy = _inverse_law(*fixed[0])
         if node:
             return NetworkError(what, "network", f"one, or {expected}", f"{put}; or {remedy}")
-        if len(fixed) == len(edges) and word != MIXED:  # with one turned, they would make a loop
+        if len(fixed) == len(edges) and word != MIXED:  # turning one would close a loop
             expected, remedy = "independent laws", _store_between(ports[0], _loose_end(laws, edges))
         elif len(fixed) > 1:
             remedy = f"{remedy}; or {_separation(ports, word == MIXED)}"
@@ -90,7 +90,7 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
 
 
 def _of_lanes(laws: Laws, edges: list[Edge]) -> str:
-    """Return why a linear law among branches is not turned round: it is of a bank; or ''."""
+    """Return the note that a linear law is not turned round because it belongs to a bank, or ''."""
     for placed, port in ((edge.placed, edge.port) for edge in edges if edge.placed.bank):
         if isinstance(port, DissipativePort) and turn(port, laws.circuit.names):
             bank = f"'{placed.element}' is of a bank"
@@ -99,7 +99,7 @@ def _of_lanes(laws: Laws, edges: list[Edge]) -> str:
 
 
 def _alone(laws: Laws, edges: list[Edge], word: str, place: str, coupled: bool) -> NetworkError:
-    """Return the error of one element, or of the lanes of one bank, that nothing lets move."""
+    """Return the error of one element, or the lanes of one bank, whose variable is forced to 0."""
     placed, expected, remedy = edges[0].placed, f"a free {word}", "connect it to other nodes"
     what = f"the {word} of '{placed.element}' is forced to be zero{place}"
     if placed.bank and not coupled and edges[0].port.imposes is ACROSS:
@@ -138,7 +138,7 @@ def _loose_end(laws: Laws, edges: list[Edge]) -> str:
 
 
 def _massless(laws: Laws, edges: list[Edge]) -> tuple[str, str]:
-    """Return the first node whose forces or torques are all given, and the kind that it lacks."""
+    """Return the first node at which all forces or torques are given, and the kind of inertia."""
     moved = {n for e in laws.edges if e.port.imposes is ACROSS for n in e.branch}
     for edge in edges:
         port = edge.port
@@ -169,7 +169,7 @@ def _separation(ports: list[Imposing], mixed: bool) -> str:
 
 
 def _store_between(port: Imposing, node: str = "") -> str:
-    """Return the advice to put a store between two that give the variable of a port, at a node."""
+    """Return the advice to put a store between two elements that impose the same variable."""
     domain = port.domain
     store = with_article(kind_of("store", domain, port.imposes.other).name)
     if port.imposes is ACROSS:

@@ -41,7 +41,7 @@ TRIED = tuple(
     for size in map(Fraction, ("1", "2", "3", "1/2", "5", "4", "10", "1/10", "20", "100"))
     for sign in (1, -1)
 )
-#: How many of them are tried where a parameter is moved, too; its moves as (factor, summand).
+#: How many of them are tried together with a changed parameter; its changes as (factor, summand).
 FEW = 8
 MOVES = tuple((Fraction(a), Fraction(b)) for a, b in ((10, 0), (-1, 0), (1, 1), (1, -1)))
 MOVES += ((Fraction(1, 10), Fraction(0)),)
@@ -96,7 +96,7 @@ class DomainOracle:
         return self.follows(Cmp(">", part, ZERO))
 
     def nonnegative(self, part: Expr) -> bool:
-        """Return whether a tree is nowhere negative by its form, wherever it has a value."""
+        """Return whether the form of a tree shows that it is >= 0 wherever it has a value."""
         match part:
             case Sym() | Num():
                 return self.positive(part)
@@ -143,7 +143,7 @@ class DomainOracle:
         return None
 
     def related(self, words: Iterable[str]) -> set[str]:
-        """Return names and all others that conditions connect with them, directly or not."""
+        """Return `words` and all names that conditions connect with them, even indirectly."""
         known = {*words}
         return known.union(*(names(condition) for condition in connected(self.where, known)))
 
@@ -185,7 +185,7 @@ def simple_counterexample(claim: Cmp, letter: str, domain: DomainOracle) -> Numb
 def _candidates(
     claim: Cmp, letter: str, domain: DomainOracle, point: Numbers | None
 ) -> Iterator[Numbers]:
-    """Yield points with simple values of the letter; where it is tied to states, by the solver."""
+    """Yield points with simple values of the letter; if states tie it, as the solver finds them."""
     if point is None:
         return
     if not _tied(letter, domain):
@@ -203,9 +203,9 @@ def _tied(letter: str, domain: DomainOracle) -> bool:
 def moved_counterexample(
     claim: Cmp, letter: str, domain: DomainOracle, own: Numbers | None = None
 ) -> Numbers | None:
-    """Return numbers that break a claim: the domain's simplest, or `own`, one parameter moved.
+    """Return numbers that break a claim: a simple point, or `own`, with one parameter changed.
 
-    Beside `own`, the letter also has the sizes of parameters: tanh(v/v_0) bends near v_0 alone.
+    With `own`, the letter is tried at the sizes of parameters, too: tanh(v/v_0) bends near v_0.
     """
     near = domain.related(names(claim))
     point = {n: own[n] for n in near & own.keys()} if own else domain.point(NEVER, names(claim))

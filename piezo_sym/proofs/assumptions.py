@@ -33,7 +33,7 @@ class Law:
     tree: Expr  # the law
     letter: str = ""  # of a dissipative law, the letter of its conjugate variable
     jumps: bool = False  # whether the spec declares it discontinuous
-    #: The equation of a letter with states, if it cannot take every value; None if not known.
+    #: Equation letter = drive (states, inputs), if the letter may be bounded; None: drive unknown.
     ties: tuple[Cmp | None, ...] = ()
     #: The laws as the spec has them, where the network inverts the law or joins stores.
     written: tuple[Expr, ...] = ()
@@ -54,7 +54,7 @@ class Assumptions:
     where: tuple[Cmp, ...]  # the domain, T > 0, and ties of names to states
     order: tuple[str, ...]  # names, in the order in which a witness should be simple
     texts: tuple[str, ...]  # the domain, as text
-    #: Each temperature, and the obligation that it is positive.
+    #: The name of each temperature, and (id, element) of the obligation that it is positive.
     warm: tuple[tuple[str, tuple[str, str]], ...] = ()
     fixed: frozenset[str] = frozenset()  # names that are constant in a run: the parameters
 

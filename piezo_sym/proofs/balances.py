@@ -166,8 +166,8 @@ def _exchange_questions(iphs: IPHS, assumptions: Assumptions) -> Iterator[Questi
 def _gradient(iphs: IPHS, assumptions: Assumptions) -> Iterator[Residual]:
     """Yield the residual dU/dx - E for each state.
 
-    Where normal forms do not show that it is zero, branches may show that the energies' slope is
-    the law of the spec: that says something of E only if E is that law.
+    Where its normal form is not zero, the slope of the energies is compared branch by branch with
+    the law in the spec, provided that E is that law.
     """
     stored: dict[str, list[tuple[Energy, sp.Expr]]] = {}
     for energy in iphs.energies:
@@ -178,7 +178,7 @@ def _gradient(iphs: IPHS, assumptions: Assumptions) -> Iterator[Residual]:
     for (_, port), (_, costate) in zip(stores, iphs.costates, strict=True):
         state = iphs.symbols[port.state]
         own = stored.get(port.state, [])
-        # SymPy takes longer for a product
+        # factors without the state are taken out: SymPy is slow to differentiate the product
         parts = (law.as_independent(state, as_Add=False) for _, law in own)
         difference = sp.Add(*(factor * sp.diff(part, state) for factor, part in parts)) - costate
         residual, empty = sp.expand(sp.together(difference)), tuple[Question, ...]()
@@ -198,8 +198,8 @@ def _slope_questions(
 ) -> Iterator[Question]:
     """Ask whether each branch on which an energy's slope is not the co-state is empty.
 
-    On a branch that is an edge, a = b, they are compared on the edge.  The slope of either side may
-    be used there, as rows ``continuous`` show that neither energy nor law jumps.
+    If a branch is an edge, a = b, slope and co-state are compared on the edge alone, with the slope
+    of either side: rows ``continuous`` show that neither energy nor law jumps.
     """
     known = tuple(condition.tree for condition in iphs.circuit.conditions)
     positive = {c.left for c in map(greater, known) if c.op == ">" and c.right == ZERO}

@@ -49,8 +49,8 @@ def _freed(
 ) -> Iterator[tuple[str, tuple[Cmp, ...]]]:
     """Yield free names with the conditions that they satisfy, which are then left out.
 
-    The order of names does not matter: fewer conditions only free more names.  `others` are, by
-    name, the sides from which further conditions bound it.
+    The order of names does not matter: fewer conditions only free more names.  `others` has, for
+    each name, the sides from which conditions outside `found` bound it.
     """
     users: dict[str, dict[Cmp, str]] = {}
     for condition in found:
@@ -115,9 +115,9 @@ class _Index:
         return near
 
     def needed(self, words: Collection[str], more: Iterable[Cmp]) -> Iterator[Cmp]:
-        """Yield the additional conditions, and those whose free name is free no more.
+        """Yield the additional conditions, and those left out for a name that is no longer free.
 
-        These names are `words`, and names that yielded conditions bound from another side.
+        A name is no longer free if it is in `words`, or a yielded condition bounds its other side.
         """
         sides: dict[str, set[str]] = {}
         waiting, here = [*words], [*more]

@@ -18,9 +18,9 @@ from piezo_sym.proofs.shortening import shortened, sided, without_factors
 from piezo_sym.spec.elements.ports import Body, Exchange
 from piezo_sym.spec.tables import condition_text, without_default
 
-#: Of a temperature whose law is longer, a condition has the name.
+#: If the law of a temperature is longer than this, a condition says T_body > 0 in its place.
 MOST_TEXT = 24
-#: The slopes by S of what has to rise with it.
+#: The slope with respect to the entropy S of each quantity that must rise with S.
 SLOPES = {"energy": "T = dU/dS", "temperature": "dT/dS"}
 
 
@@ -43,7 +43,7 @@ def domain_conditions(
         for c in (q.original for q in failed)
     ]
     known = frozenset[str]().union(*points)
-    # [domain] takes no =, which claims on jumps have
+    # claims that a law does not jump are equations, which [domain] does not take
     if not broken or not all(claim.op != "=" and known >= {*names(claim)} for claim in broken):
         return ""
 
@@ -88,7 +88,7 @@ def turning(conditions: Iterable[Cmp], iphs: IPHS) -> str:
 def _conditions(
     broken: Iterable[Cmp], iphs: IPHS, question: Question, fails: Callable[[Question], bool]
 ) -> dict[Cmp, str]:
-    """Return the conditions that claims need, without positive factors, and their texts."""
+    """Return the conditions under which claims hold, without positive factors, and their texts."""
     points, bodies = spec_points(iphs), [port for _, port in iphs.circuit.of(Body)]
     found = dict[Cmp, str]()
 
@@ -108,7 +108,7 @@ def _conditions(
         way = next((way for way in ways if _satisfied(way, points)), ways[0])
         warm = [f"{body.temperature} > 0" for body in bodies if body.law == claim.left]
         text = condition_text(sided(way))
-        if warm and len(text) > MOST_TEXT:  # the law, which may divide where `way` multiplies
+        if warm and len(text) > MOST_TEXT:  # T > 0 is about the law itself, not `way`
             way, text = claim, warm[0]
         found.setdefault(way, text)
     return found

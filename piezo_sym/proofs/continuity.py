@@ -56,7 +56,7 @@ def continuous(laws: tuple[Law, ...], assumptions: Assumptions) -> Obligation | 
     statement = _statement(*own)
     obligation = Obligation("continuous", element, statement, latex, assumptions.texts)
     tables = [law for law in own if not _has_choices(law.tree)]
-    alone = [law for law in tables if not law.letter]  # others have a row welldef anyway
+    alone = [law for law in tables if not law.letter]  # dissipative laws have a row welldef anyway
     valid = obligation.asking(
         lambda: (q for law in alone for q in value_questions(law.tree, assumptions)),
         own[0].of_element,
@@ -145,7 +145,7 @@ def _meeting_questions(meeting: Meeting, assumptions: Assumptions) -> Iterator[Q
 
 
 def _border(one: Branch, other: Branch, fixed: frozenset[str]) -> Iterator[Cmp]:
-    """Yield what holds where the closed parts of two branches meet; equations are edges.
+    """Yield the conditions where the closed parts of two branches meet; equations are edges.
 
     Conditions on parameters alone stay as they are: parameters are constant across an edge.
     """
@@ -160,11 +160,11 @@ def _border(one: Branch, other: Branch, fixed: frozenset[str]) -> Iterator[Cmp]:
 
 
 def neighbour_questions(questions: tuple[Question, ...], solver: SolverLike) -> Iterator[Question]:
-    """Yield the questions without those on two branches that are no neighbours.
+    """Yield the questions, except those on two branches that are not neighbours.
 
-    Two branches are neighbours if there is no third whose conditions are all among theirs.  Where
-    two others meet, such a third meets both.  That it agrees with each is asked, or follows in the
-    same way: it contradicts each in fewer conditions than they contradict each other.
+    Two branches are neighbours if no third branch has all its conditions among theirs.  If one has,
+    it lies wherever the two meet, so they agree if it agrees with each.  That is asked, or follows
+    in the same way: the third contradicts each in fewer conditions than they contradict each other.
     """
     yield from (q for q in questions if q.meeting is None)
     meetings = [(q.meeting.law, q) for q in questions if q.meeting]

@@ -118,7 +118,7 @@ def spec_points(
 ) -> tuple[dict[str, Value], ...]:
     """Return the spec's own values in each lane of its banks; () if one of them has no value.
 
-    What is `given` replaces them; temperatures follow from the rest.
+    Values in `given` replace the spec's own; temperatures follow from the rest.
     """
     model = iphs.model
     lists = {name: parameter.lanes for name, parameter in model.parameters.items()}

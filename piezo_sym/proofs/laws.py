@@ -94,7 +94,7 @@ def _law(iphs: IPHS, placed: Placed) -> Law | None:
 
 
 def _apart(iphs: IPHS, state: str) -> tuple[Expr, ...]:
-    """Return the laws and energies of the stores that are joined into a state, each alone."""
+    """Return the laws and energies that stores joined into one state have by themselves."""
     joints = [j for j in iphs.junction.joints if j.kept[0].store.state == state]
     stores = [member.store for joint in joints for member in joint.members]
     return tuple(law for store in stores for law in (store.law, store.energy) if law is not None)

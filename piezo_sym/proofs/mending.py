@@ -68,7 +68,7 @@ Proved = Callable[[Obligation], bool]
 Shown = Callable[[Expr, str], bool]
 #: A test of positivity where conditions hold besides those of the domain.
 Within = Callable[[Collection[Cmp]], Positive]
-#: A law of more branches is told no conditions of its terms.
+#: For a law with more branches, no conditions on the coefficients of its terms are looked for.
 MOST = 16
 STRICT = {"<=": "<", ">=": ">"}
 
@@ -156,7 +156,7 @@ def _instead(new: Expr, old: Expr) -> str:
 def _ways(
     factor: Cmp | None, sign: SignOf, given: Collection[str], within: Within, shown: Shown
 ) -> Iterator[tuple[Cmp, ...]]:
-    """Yield conditions that may mend a law: of its factors, of its terms, of its parameters."""
+    """Yield conditions that may mend a law: on its factors, on its terms, on its parameters."""
     if factor:
         yield from ((shortened(factor, within(())),), (factor,))
     elif sign.letter:
@@ -180,9 +180,9 @@ def _of_factor(law: Expr, letter: str, shown: Shown) -> Cmp | None:
 
 
 def _of_ends(law: Expr, letter: str, given: Collection[str], shown: Shown) -> tuple[Cmp, ...]:
-    """Return conditions on `given` names under which a factor is >= 0 at its ends.
+    """Return conditions on `given` names under which a factor is >= 0 at letter 0 and far from it.
 
-    With exp of the letter, which is 1 at 0 and 0 far from it, that may be all that it needs.
+    A factor with exp(-abs(v)), which is 1 at v = 0 and 0 far away, may lie between these values.
     """
     factors = list(sign_factors(law))
     for n, factor in enumerate(factors):
@@ -215,14 +215,14 @@ def _of_terms(sign: SignOf, fixed: Collection[str], within: Within) -> tuple[Cmp
     claims = (without_factors(Cmp(">=", c, ZERO), everywhere) for c in found)
     conditions = dict.fromkeys(shortened(claim, everywhere) for claim in claims)
     if any(tidied(add(a.left, b.left)) == ZERO for a, b in combinations(conditions, 2)):
-        return ()  # what has to be zero, as a + d in (a + d)*abs(v)
+        return ()  # a coefficient must be zero, as a + d in (a + d)*abs(v)
     return _joined(c for c in conditions if names(c))
 
 
 def _of_branch(
     branch: Branch, letter: str, fixed: Collection[str], within: Within
 ) -> list[Expr] | None:
-    """Return what has to be >= 0 on a branch, also if that is seen for each sign of the letter."""
+    """Return what has to be >= 0 on a branch, if need be found for each sign of the letter."""
     inside = [Cmp(STRICT.get(c.op, c.op), c.left, c.right) for c in branch.conditions]
     own = _coefficients(branch, letter, fixed, within(inside))
     if own is not None or not letter:

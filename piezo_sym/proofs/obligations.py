@@ -53,7 +53,7 @@ class Question:
     label: str  # the claim in words
     order: tuple[str, ...]  # names, in the order in which a witness should be simple
     where: tuple[Cmp, ...]  # the assumptions; they may have kinks and functions
-    claim: Cmp  # what should follow, as a rule on one branch of a law
+    claim: Cmp  # what should follow, usually about one branch of a law
     original: Cmp  # the claim on the law as the spec has it, on which a witness is checked
     branch: tuple[Cmp, ...] = ()  # those of the assumptions that select the branch
     #: On the border of two branches: these branches; a witness must show a jump.
@@ -157,7 +157,7 @@ class Residual:
 
     place: str
     expr: sp.Expr
-    #: Questions whether certain branches are empty; on all others it is zero.
+    #: Questions whether certain branches are empty; on all others `expr` was found to be zero.
     empty: tuple[Question, ...] = ()
     derived: bool = False  # whether it is about an integrated energy
 
@@ -207,15 +207,15 @@ class Obligation:
     #: Other obligations, as (id, element), that must hold.
     rests_on: tuple[tuple[str, str], ...] = ()
     sign: SignOf | None = None  # the law whose sign the questions are about, if they are
-    letter: str = ""  # a letter of which simple values are tried where questions are left open
+    letter: str = ""  # the letter whose simple values are tried if questions stay open
     required: bool = True  # whether `generate` insists on it; else it is information
-    #: A letter that the domain may bound through a drive that is not written out: numbers for it
-    #: refute nothing.
+    #: A letter that the domain may bound in an unknown way, as its drive is no expression in states
+    #: and inputs: numbers for it refute nothing.
     loose: str = ""
     open_because: str = ""  # why no questions could be asked
 
     def published(self) -> Stated:
-        """Return what others are told of it."""
+        """Return the parts of the obligation that a report publishes beside its row."""
         queries = ((question.query.label, question.query.text()) for question in self.questions)
         return Stated(self.latex, self.assumptions, self.rests_on, tuple(queries))
 

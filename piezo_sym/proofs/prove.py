@@ -39,13 +39,13 @@ LANES = 2
 #: First values that the symbols of a residual are given.
 STARTS = (1, 2, 3)
 LOOSE = "the domain may bound what drives the element, in a way that is not looked at"
-#: Rows whose questions may be about what [domain] can bound.
+#: Rows for which, once refuted, conditions for [domain] are looked for.
 DECLARED = frozenset({"welldef", "temperature", "exergy", "environment"})
 #: The remedy where an integrated energy is not shown to belong to its law.
 GIVE = "the law's energy that was found could not be verified: give it, energy = '...'"
 #: Open questions of an obligation after which no more are asked.
 MOST_OPEN = 4
-#: No condition that mends an obligation of more questions is looked for: each is asked again.
+#: With more questions than this, no condition for [domain] is looked for: it repeats all of them.
 MOST_MENDED = 500
 
 
@@ -263,7 +263,7 @@ def _mended_by(found: Finding, obligation: Obligation, iphs: IPHS, solver: Solve
 
 
 def _held(witness: Mapping[str, str], element: str, iphs: IPHS) -> str:
-    """Return that states that drive a letter were held while its sign changed, or ''."""
+    """Return the note that states in a letter's drive were held while its sign changed, or ''."""
     for tie in drive_of(iphs, element):
         driving = {slot.label for slot in iphs.system.states} & {*names(tie.right)}
         if held := [name for name in witness if name in driving]:
@@ -273,7 +273,7 @@ def _held(witness: Mapping[str, str], element: str, iphs: IPHS) -> str:
 
 
 def _domain_conditions(obligation: Obligation, iphs: IPHS, solver: SolverLike) -> str:
-    """Return what mends a row of claims, as the end of a reason, or ''."""
+    """Return the conditions for [domain] that mend a row, as the end of its reason, or ''."""
     if len(obligation.questions) > MOST_MENDED:
         return ""
     ties = drive_of(iphs, obligation.element)

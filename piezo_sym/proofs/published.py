@@ -23,7 +23,7 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.spec.elements.ports import Body, Conductor, Coupling, DissipativePort, Storage
 
-#: The law language, sums over the lanes of a bank, and powers of what may be zero.
+#: The law language with sums over the lanes of a bank, and powers of a base that may be zero.
 STYLE = changed(
     SPEC,
     lane_sum=lambda arg, bank: (f"sum({bank}, {arg[0]})", ATOM),

@@ -43,10 +43,10 @@ class Finding(NamedTuple):
 def beside_own_values(
     questions: Iterable[Question], iphs: IPHS, solver: SolverLike
 ) -> Finding | None:
-    """Return the refutation of a claim at the spec's own values but for some, or None.
+    """Return the refutation of a claim by the spec's own values with some replaced, or None.
 
-    A solver's model is seldom in the domain where it bounds functions, such as the exponential of
-    a temperature: what it gives to parameters and inputs is tried with the spec's own state.
+    A solver knows functions such as exp by bounds alone, so its model seldom lies in the domain:
+    the parameters and inputs of the model are tried with the spec's own state.
     """
     given = iphs.model.parameters.keys() | iphs.model.inputs.keys()
     for question in questions:
@@ -66,9 +66,9 @@ def beside_own_values(
 
 
 def _lacks_value(law: Expr | Cmp | None, point: Mapping[str, Value]) -> bool:
-    """Return whether a law that a question is about, if any, has no value at a point of a state.
+    """Return whether the law of a question, if it has one, has no value at a point.
 
-    Where conditions can be decided, the part without value counts whatever the drive is.
+    Names that the point does not give, such as the drive, are 0.
     """
     if law is None:
         return True
@@ -87,8 +87,8 @@ def checked_model(question: Question, answer: Answer, shown: tuple[str, ...]) ->
 def power_of_zero(question: Question, solver: SolverLike) -> Finding | None:
     """Return the refutation of a law by a power of zero with a negative exponent, or None.
 
-    Laws may not have powers with any exponent <= 0, but mathematics has all others: they are not
-    shown as counterexamples.
+    Laws may have a power of zero only with an exponent > 0.  But only a negative exponent is a
+    counterexample, since in mathematics the others have a value.
     """
     for part in walk(question.law) if question.law else ():
         match part:
@@ -105,7 +105,7 @@ def power_of_zero(question: Question, solver: SolverLike) -> Finding | None:
 
 
 def _why_undecided(question: Question, values: Mapping[str, Value]) -> str:
-    """Return why a model refutes nothing: it is no point of the domain, as far as that is known."""
+    """Return why a model refutes nothing: it is not known to be a point of the domain."""
     false = all_hold((question.original,), values) is False
     for condition in question.where:
         if false and condition not in question.branch and _has_no_value(condition, values):

@@ -1,7 +1,7 @@
 """Conditions on the sign of a law, as a person would write them.
 
-Input: a comparison with zero, and a test of positivity.  Output: a shorter one that means the same
-where that test is right: without positive factors, kap > 1 for kap**2*x - kap*x > 0.
+Input: a comparison with zero, and a test of positivity.  Output: a shorter comparison that is
+equivalent if the test is right: without positive factors, kap > 1 for kap**2*x - kap*x > 0.
 """
 
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ from piezo_sym.proofs.signs.reduce import Positive, Setting, factored
 
 #: Functions that are positive wherever they have a value.
 ABOVE = frozenset({"exp", "cosh"})
-#: What a comparison is with its sides exchanged.
+#: The operator of a comparison after its sides are exchanged.
 TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "!=": "!="}
 #: A product: its number, and the exponent of each other factor.
 Factors = tuple[Fraction, dict[Expr, Fraction]]
@@ -42,7 +42,7 @@ def shortened(claim: Cmp, positive: Positive) -> Cmp:
 
 
 def sided(condition: Cmp) -> Cmp:
-    """Return a comparison of a sum with zero as n > 1, or a <= 1: names on the left."""
+    """Return a comparison of a sum with zero, such as n - 1 > 0, as n > 1: terms on both sides."""
     if condition.right != ZERO or not isinstance(condition.left, Add):
         return condition
     terms = condition.left.terms

@@ -104,7 +104,7 @@ def _read(line: bytes) -> Answer:
 class Opinions:
     """Two solvers, the second for what the first does not know.
 
-    Only a proof counts of the second, as it gives no model that could be checked.
+    Of the second solver's answers only a proof counts, as it gives no model that could be checked.
     """
 
     first: SolverLike

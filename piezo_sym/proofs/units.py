@@ -3,9 +3,9 @@
 Input: an `IPHS`, for its spec.  Output: one row PROVED, or a row REFUTED for each fault.  The
 junction laws add like quantities only, so the equations have the right units if each law has.
 
-A fault is a linear equation between the dimensions of names that does not hold.  Its remedy is
-solved for: the unit of one parameter with which all faults vanish, or else this one, without a new
-fault.
+A fault is a linear equation between the dimensions of names that does not hold.  The remedy is
+found by solving it for the unit of one parameter, with which all faults vanish, or at least this
+fault without a new one.
 """
 
 from collections.abc import Iterable, Iterator
@@ -53,14 +53,14 @@ from piezo_sym.spec.unit_text import quantity, unit_text
 STATEMENT = "every term of every equation has its row's unit"
 MOST_TERM = 60
 MOST_CANDIDATES = 3
-#: Other forms of a law that are tried.
+#: The most rewritten forms of a law that are tried.
 MOST_RESPELLED = 100
 
 
 @final
 @dataclass(frozen=True)
 class Check:
-    """A rule on units, its place, the powers of names in it, and the unit it lacks on the left."""
+    """A rule on units, its place, the powers of names in it, and the unit missing on its left."""
 
     place: Place
     rule: Match
@@ -70,15 +70,15 @@ class Check:
 
     @property
     def where(self) -> str:
-        """Its place as the user wrote it."""
+        """The place of the rule in the spec, as the user wrote it."""
         return self.origins.written(self.place.where)
 
     def name(self, name: str) -> str:
-        """Return what a name is called there."""
+        """Return a name as the user spelled it at this place."""
         return self.origins.name(self.place.where, name)
 
     def text(self, node: Node) -> str:
-        """Return a term as the user spelled it there, shortened if it is long."""
+        """Return a term as the user spelled it at this place, shortened if it is long."""
         bare = node.arg if isinstance(node, Neg) else node
         text = condition_text(bare) if isinstance(bare, Cmp) else spell(bare)
         text = Renaming({name: self.name(name) for name in names(bare)}).text(text)
@@ -186,7 +186,7 @@ def _fitting(name: str, checks: Iterable[Check]) -> Dimension | None:
 
 
 def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
-    """Return what to change where no one parameter's unit would mend the fault."""
+    """Return what to change if no change of a single parameter's unit removes the fault."""
     rule, words = fault.rule, fault.place.words
     if regrouped := _regrouped(fault):
         return regrouped
@@ -207,7 +207,7 @@ def _other_remedy(fault: Check, checks: tuple[Check, ...]) -> str:
 
 
 def _regrouped(fault: Check) -> str:
-    """Return a law with a bracket more, or a division, with which all units fit, or ''."""
+    """Return the advice to regroup a sum, or to divide, if all units fit then, or ''."""
     place, tree = fault.place, fault.place.tree
     if isinstance(tree, Cmp):
         return ""
@@ -219,7 +219,7 @@ def _regrouped(fault: Check) -> str:
 
 
 def _respelled(tree: Expr) -> Iterator[tuple[Expr, Expr]]:
-    """Yield parts of a law with what may be meant: a*(b + c) for a*b + c, a/b or b/a for a*b."""
+    """Yield (part of a law, what may be meant): a*(b + c) for a*b + c, a/b or b/a for a*b."""
     for node in walk(tree):
         match node:
             case Add(terms):

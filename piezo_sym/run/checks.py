@@ -20,7 +20,7 @@ FloatArray: TypeAlias = NDArray[np.float64]
 
 #: The types of truth values, which Python and NumPy take for numbers.
 BOOLS = frozenset({bool, np.bool_})
-#: The functions whose checks others share.
+#: Matches the names of functions whose checks of arguments other functions use.
 SHARED = re.compile(r"^(simulate|operating_point|periodic_steady_state)\.")
 #: The smallest duration, temperature or frequency: fractions of a smaller one underflow.
 LEAST = 1e-100

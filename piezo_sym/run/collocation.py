@@ -28,14 +28,14 @@ from piezo_sym.run.system import QUIET, DrivenModule
 METHOD = "discrete_gradient"
 #: Called with the time [s] that runs have reached, every few milliseconds; an exception ends them.
 Watch: TypeAlias = Callable[[float], object]
-#: The first step, the longest step, and the longest of the survey of scales, over the duration.
+#: The first step, the longest step, and the longest step of the coarse run, over the duration.
 FIRST, LONGEST, SURVEYED = 1e-5, 0.25, 1 / 64
 #: States times steps between two calls of `watch`: some milliseconds.
 CHUNK = 50_000
 #: In runs of more states, vectors hold lanes of banks instead of runs.
 MOST_STATES = 32
-#: Least rtol; the cheapest number of stages; the estimated error allowed in a step, over rtol, with
-#: which the largest error of a run is about rtol.
+#: (least rtol, cheapest number of stages, tolerance of a step's estimated error over rtol); the
+#: tolerance is chosen so that the largest error of a run is about rtol.
 STAGES = ((3e-6, 4, 0.3), (0.0, 6, 0.75))
 #: Below this tolerance steps end at kinks, however many there are.
 LEAST_OVER = 1e-6
@@ -45,7 +45,7 @@ MOST_STEPS = 1e12
 ORDERS = (2, 4, 6, 8, 10, 12)
 #: A step that ends closer than this, over its length, to a sample or a break ends there.
 ROUNDING = 1e-9
-#: The least error that is estimated, over the noise of a state at rest.
+#: The smallest tolerance of a state's error, over the round-off that moves the state at rest.
 OVER_NOISE = 50.0
 
 
@@ -209,7 +209,7 @@ def stepping(system: DrivenModule, accuracy: float | FixedStep, stages: int | No
 
 
 def stages_for(rtol: float) -> tuple[int, float]:
-    """Return the stages of a step, and its largest estimated error over rtol."""
+    """Return the number of stages, and the tolerance of a step's estimated error over rtol."""
     return next((stages, part) for least, stages, part in STAGES if rtol >= least)
 
 

@@ -115,7 +115,7 @@ def _margin_of_several(text: str, where: str) -> Expr:
 def _parsed(
     read: Callable[[str, str], Expr], text: object, where: str, such: str, form: str
 ) -> Expr:
-    """Return what is read of a text; the error of other comparisons has the text in this form."""
+    """Return the parsed text; if only a condition may stand there, the remedy has it in `form`."""
     if not isinstance(text, str):
         raise UsageError(f"{quote(text)} is no text", where, f"text such as {such}")
     plain = QUANTITY.sub(r"_\1_\2", text)  # no spec has such names

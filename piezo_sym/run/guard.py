@@ -17,12 +17,12 @@ from piezo_sym.run.inputs import Segment
 from piezo_sym.run.module import GeneratedModule, by_name, row_name, rows
 from piezo_sym.run.system import DrivenModule
 
-NAME = re.compile(r"[A-Za-z_]\w*\b(?!\()")  # of no function
+NAME = re.compile(r"[A-Za-z_]\w*\b(?!\()")  # a name that is not called
 MOST_VALUES = 4
-#: Checks of inputs within their longest step; and the most numbers of states in all checks.
+#: Checks of inputs per longest step; the most numbers (checks times states) in a run.
 CHECKS, MOST_NUMBERS = 4, 5_000_000
 
-#: The ending of an element's largest effort; and how far beyond it round-off may be, of it.
+#: The name's ending for an element's largest effort; the part of it allowed beyond for round-off.
 LIMIT, SLACK = ".limit", 1e-9
 
 Value = tuple[str, str, "float | FloatArray"]  # label, unit, value
@@ -31,7 +31,7 @@ Value = tuple[str, str, "float | FloatArray"]  # label, unit, value
 def check_start(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> None:
     """Raise `RunError` if the run cannot start from the state x (n,) at t = 0.
 
-    Stops keep their limits but for `slack`, a fraction of the limit.
+    A stop may exceed its limit by `slack`, a fraction of the limit.
     """
     t = system.inputs.start
     u = system.inputs.segments[0].at(t)
@@ -67,7 +67,7 @@ def stop_rows(module: GeneratedModule, p: Any, x: FloatArray, u: FloatArray) -> 
 
 
 def slack_of(initial: object, parameters: object) -> float:
-    """Return how far beyond limits a run may start: where a run has ended, as SciPy knows none."""
+    """Return the slack of limits at the start: inf after another run, as SciPy keeps no limits."""
     return np.inf if hasattr(initial, "data_vars") and not parameters else SLACK
 
 
@@ -197,7 +197,7 @@ def edge_ahead(
 ) -> tuple[str, str]:
     """Return the condition that fails first ahead of the state, and a message; or '' twice.
 
-    It is looked for after times of these lengths [s], at the rates that the state has.
+    The state is extrapolated at its present rates over each of these times [s].
     """
     with np.errstate(all="ignore"):
         rates = system.module.rhs(x, u, system.parameters)

@@ -27,10 +27,10 @@ InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[
 
 
 class InputWarning(UserWarning):
-    """An input that drove the run that goes on, and is left out: it has its default again."""
+    """An input drove the run that is continued, but is not given now: it has its default again."""
 
 
-CLOSE = 1e-12  # of the end time: breaks nearer than this are one
+CLOSE = 1e-12  # fraction of the end time: breaks closer than this are merged
 LEAST_JUMP = 1e-6  # of an input's size nearby: smaller differences are round-off of a corner
 
 
@@ -184,7 +184,7 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
         (r, default)
         for r, default in zip(module.INPUTS, module.INPUT_DEFAULTS, strict=True)
         if r.name not in (given if isinstance(given, Mapping) else ())
-        and r.name in before  # it may have states alone
+        and r.name in before  # the Dataset may have states alone
         and np.any(before[r.name] != default)
     ]
     for record, default in left:

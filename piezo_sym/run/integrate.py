@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 IMPLICIT = ("Radau", "BDF", "LSODA")
 MOST_STILL = 20  # the most steps in a row that do not change the time
-#: The most steps of one length in a row; how far they differ; the most of them that may be left.
+#: The most steps of equal length in a row; their relative difference; the most that may be left.
 MOST_EQUAL, SAME, MOST_LEFT = 200, 1e-3, 2000
-NEAR = 1e-9  # of a time: LSODA cannot start closer to its end
+NEAR = 1e-9  # fraction of the end time: LSODA cannot start closer to it
 SHORTEST = 1e-12  # of a segment: the shortest first step after a failure
 
 
@@ -47,7 +47,7 @@ def accepted_steps(
 
     LSODA accepts trial states at which the laws are nan, and other solvers give up near one. So a
     step that fails is repeated from the last accepted state, ten times shorter. After a jump of the
-    rates LSODA may keep for ever to the steps that the slope there allows: so it starts anew.
+    rates LSODA may take the short steps needed there for the rest of the run: then it is restarted.
     """
     span = trial = segment.stop - segment.start
     solver, rest, spent, still, equal = None, segment, 0, 0, 0
@@ -73,7 +73,7 @@ def accepted_steps(
 
 
 def crawls(tolerance: Tolerance, rest: Segment, step: float) -> bool:
-    """Return whether LSODA can restart in the rest of the run, and takes too many such steps."""
+    """Return whether LSODA would take too many such steps, and can restart before the end."""
     left = rest.stop - rest.start
     return tolerance.method == "LSODA" and left > max(MOST_LEFT * step, NEAR * abs(rest.stop))
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 Given: TypeAlias = Mapping[str, LaneValue]
 Start: TypeAlias = "Given | xarray.Dataset"
 
-#: The parts of a call's time, one after the other, in which a state is looked at ahead.
+#: The fractions of a call's time over which a failed state is extrapolated, to find the cause.
 AHEAD = (1e-6, 1e-4, 1e-2, 0.1, 0.3, 1.0)
 
 

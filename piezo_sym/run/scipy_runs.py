@@ -32,7 +32,7 @@ ATOL_FACTOR = 1e-3
 NODES = 4  # of the quadrature, exact to degree 7: above the order of every interpolant
 #: The most times, and numbers of states, in a group.
 MOST_STOPS, MOST_NUMBERS = 512, 100_000
-#: Of the coarse run; ATOL is a fraction of the scale known so far.
+#: The tolerances of the coarse run; ATOL is a fraction of the scale found so far.
 RTOL, ATOL = 1e-3, 1e-2
 GROWTH = 10.0  # of a state over its scale, at which the coarse run restarts with a new scale
 MOST_STEPS = 50_000

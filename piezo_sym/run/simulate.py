@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import xarray
 
 RTOL = 1e-5
-#: The least duration over the time at which a run starts, which has 16 digits.
+#: The least duration of a run, as a fraction of its start time: a double has 16 digits.
 RESOLVED = 1e-11
 #: The longest run [s], over the age of the universe: steps of longer ones lose all digits.
 LONGEST = 1e18

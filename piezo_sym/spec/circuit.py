@@ -38,7 +38,7 @@ from piezo_sym.spec.tables import (
     temperatures,
 )
 
-#: How the last node of a lane in a chain ends (no spec can write the colon).
+#: The ending of the name of a lane's last node in a chain (no spec can write the colon).
 LAST = ":last"
 A = TypeVar("A", bound=Port)
 B = TypeVar("B", bound=Port)

@@ -98,7 +98,7 @@ class Part:
     model: Tables
 
     def rows(self, table: str) -> Iterator[Row]:
-        """Yield the rows that it adds to a table."""
+        """Yield the rows that the component adds to a table of the flat spec."""
         for name, row in getattr(self.model, table).items():
             if (new := self._row(table, name, row)) is not None:
                 names = self.renaming.words if table != "elements" else {}
@@ -106,7 +106,7 @@ class Part:
                 yield new_name, new, self.origin(f"{table}.{name}")
 
     def _row(self, table: str, name: str, row: Any) -> Any:
-        """Return a row of its model under new names, or None if the flat spec does not have it."""
+        """Return a row of the component's model under new names, or None if it is left out."""
         match table:
             case "elements":
                 return self.renaming.fields(row, name) if name in self.kept else None
@@ -119,20 +119,20 @@ class Part:
         return None if name in self.gone else self.renaming.start(row)
 
     def assumed(self) -> Iterator[tuple[str, Origin]]:
-        """Yield the conditions of its domain that use nothing left out, and their origins."""
+        """Yield the conditions of the component's domain on what is kept, and their origins."""
         for n, text in enumerate(self.model.domain.assume):
             used = names(parse_condition(text, "domain.assume"))
             if self.gone.isdisjoint(used):
                 yield self.renaming.text(text), self.origin(f"domain.assume[{n}]")
 
     def origin(self, row: str) -> Origin:
-        """Return where one of its rows was written."""
+        """Return where a row of the component's model was written."""
         there = self.model.origins.of(row)
         return Origin(f"{self._within.place}: {there.place}", (self._within, *there.within))
 
     @cached_property
     def _within(self) -> Within:
-        """Its place and its own names: the first where it has several for one of ours."""
+        """The component's place, and its names for ours: the first if it has several for one."""
         words, nodes = self.renaming.words, dict[str, str]()
         old = {words[word]: word for word in reversed([*words])}
         for theirs, ours in self.component.nodes.items():
@@ -142,7 +142,7 @@ class Part:
 
     @cached_property
     def kept(self) -> Mapping[str, Element]:
-        """The elements of its model that are not left out."""
+        """The elements of the component's model that are not left out."""
         left_out, elements = {*self.component.without}, self.model.elements
         return {name: element for name, element in elements.items() if name not in left_out}
 
@@ -160,7 +160,7 @@ class Part:
 
     @cached_property
     def renaming(self) -> Renaming:
-        """The new names of its symbols, elements and nodes."""
+        """The new names of the component's symbols, elements and nodes."""
         front, given = f"{self.name}_", self.component.parameters
         symbols = {word: front + word for word in (*self.model.inputs, *states(self.model))}
         hot = temperatures(self.model) | {f"T_{body}": body for body in bodies(self.model)}
@@ -171,7 +171,7 @@ class Part:
         return Renaming(words, lambda name: front + name, self.node)
 
     def node(self, node: str) -> str:
-        """Return the name of one of its nodes in the flat spec."""
+        """Return the name in the flat spec of a node of the component."""
         same = node if node in REFERENCES else f"{self.name}.{node}"
         return self.component.nodes.get(node, same)
 

@@ -1,4 +1,4 @@
-"""Where the rows of a flat model stand in the spec as it was written, and how names go there.
+"""Where the rows of a flat model stand in the spec as it was written, and their names there.
 
 Input: places such as ``elements.left_out.current`` and names such as ``left_R`` of a flat model.
 Output: ``components.left: elements.out.current`` and ``R``.
@@ -17,7 +17,7 @@ PLACE = re.compile(r"(?:elements|parameters|inputs|initial)\.\w+|domain\.assume\
 @final
 @dataclass(frozen=True)
 class Within:
-    """A component around a row: its place, its names for ours, and its nodes that are ours."""
+    """A component that contains a row: its place, its own names for names and nodes outside."""
 
     place: str
     front: str  # of nodes that have its name in front
@@ -38,7 +38,7 @@ class Origin:
 @final
 @dataclass(frozen=True)
 class Origins:
-    """The origins of the rows of a model; they make no difference between models."""
+    """The origins of the rows of a model; equality of models does not depend on them."""
 
     rows: dict[str, Origin] = field(default_factory=dict, compare=False)
 
@@ -51,7 +51,7 @@ class Origins:
         return PLACE.sub(lambda match: self.of(match[0]).place, text)
 
     def name(self, where: str, name: str) -> str:
-        """Return what a name is called at a place of the flat model."""
+        """Return a name as it was written at the origin of a place of the flat model."""
         for part in self._within(where):
             name = part.words.get(name, name)
         return name
@@ -61,7 +61,7 @@ class Origins:
         return next((part.spec for part in reversed(self._within(where))), "")
 
     def node(self, where: str, node: str) -> str:
-        """Return the place in [components] that ties a node of an element to ours, or ''."""
+        """Return the place in [components] that connects a node of an element to ours, or ''."""
         around = ""
         for part in self._within(where):
             if node in part.nodes:

@@ -30,7 +30,7 @@ NEEDED = {  # examples of keys whose name alone does not say what to write
     "unit": 'unit = "N/m", say; unit = "1" where there is none',
     "value": "value = 1.0, or a list of one per lane",
 }
-#: The kind of what takes heat.
+#: The kind of a body that takes heat.
 BODY = "thermal_mass"
 #: The keys for the nodes of an element, each taken for the other.
 NODES = {
@@ -71,9 +71,9 @@ def together(faults: Iterable[SpecError]) -> SpecError:
 
 @contextmanager
 def all_faults() -> Iterator[Callable[[], AbstractContextManager[None]]]:
-    """Raise errors together at the end: a `with` of what is yielded keeps its error until then.
+    """Yield a context that catches a `SpecError`; raise all that were caught at the end.
 
-    Of errors that say the same, as of one unknown word in two laws, the first is kept.
+    Of errors with the same text, as of one unknown word in two laws, the first is kept.
     """
     faults: dict[str, SpecError] = {}
 
@@ -90,12 +90,12 @@ def all_faults() -> Iterator[Callable[[], AbstractContextManager[None]]]:
 
 
 def _left(detail: ErrorDetails, spec: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the known keys of the table of an unknown one, without those that an element has."""
+    """Return the known keys of the table with an unknown key, without those an element has."""
     known = _known([str(part) for part in detail["loc"]])
     if "elements" not in detail["loc"][:-1]:
         return known
     table: Any = spec
-    for part in detail["loc"][:-1]:  # pydantic names the kind of an element, too
+    for part in detail["loc"][:-1]:  # pydantic's place also has the kind
         table = table.get(part, table) if isinstance(table, Mapping) else {}
     return tuple(key for key in known if key not in table) or known
 

@@ -63,7 +63,7 @@ class Template:
 
 
 def shape_hash(data: Mapping[str, Any]) -> str:
-    """Return the SHA-256 of a spec without its values; proofs and programs depend on no more."""
+    """Return the SHA-256 of a spec without its values, on which proofs and programs depend."""
     return spec_hash(without_values(data))
 
 
@@ -77,7 +77,7 @@ def without_values(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _without_value(entry: Any, key: str, default: float | None) -> Any:
-    """Return an entry with 1 for its number; anything else stays, and is refused later."""
+    """Return an entry with 1 for its number; an entry of another form is refused later."""
     if not isinstance(entry, Mapping) or (value := entry.get(key, default)) is None:
         return entry
     return {**entry, key: _with_ones(value)}

@@ -1,7 +1,7 @@
-"""What a printed C file has besides functions: helpers, parts of functions, lists of lanes.
+"""Helpers, parts of functions and lists of lanes in a printed C file.
 
-Input: functions and expressions as `c_text` gives them.  Output: what they mean, where they are of
-a form that the grammars of `c_reader` and `c_step` allow.
+Input: functions and expressions as `c_text` gives them.  Output: their meaning, if their form is
+one that the grammars of `c_reader` and `c_step` allow.
 """
 
 import ast
@@ -16,12 +16,12 @@ from piezo_sym.translation.zero import is_zero
 
 
 def is_part(node: ast.FunctionDef) -> bool:
-    """Return whether a function computes a part of the rows of another."""
+    """Return whether a function computes part of the rows of another function."""
     return kind_of(node.returns) == "static void" and bool(re.search(r"_part_\d+$", node.name))
 
 
 def add_part(node: ast.FunctionDef, file: File) -> None:
-    """Take a part, which a later function calls."""
+    """Record a part, which a later function calls."""
     if node.name in file.parts:
         raise NotShownError(f"{node.name} is defined twice")
     file.parts[node.name] = node
@@ -34,7 +34,7 @@ def check_parts(file: File) -> None:
 
 
 def add_helper(node: ast.FunctionDef, file: File, allowed: str) -> None:
-    """Take a function of the file's own, one of those allowed."""
+    """Record a helper that the file defines; refuse one whose name does not match `allowed`."""
     known = node.name in file.helpers or node.name in file.calls
     kinds = {kind_of(arg.annotation) for arg in node.args.args}
     if known or not re.fullmatch(allowed, node.name) or not kinds <= {file.number, "int"}:
@@ -43,7 +43,7 @@ def add_helper(node: ast.FunctionDef, file: File, allowed: str) -> None:
 
 
 def helper_is(file: File, name: str, function: Callable[..., Value], count: int) -> bool:
-    """Return whether a function of the file's own is a given one, of `count` numbers."""
+    """Return whether a helper of the file is shown to equal `function` of `count` numbers."""
     if name not in file.helpers:
         return False
     args = [file.known.field.name(f"{n} of {name}") for n in range(count)]
@@ -53,7 +53,7 @@ def helper_is(file: File, name: str, function: Callable[..., Value], count: int)
 
 
 def lists(node: ast.expr, scope: Scope) -> list[Deferred]:
-    """Return what ``j < n ? listed[j] : (double)NAN`` lists, n the list's length."""
+    """Return the entries of `listed` in ``j < n ? listed[j] : (double)NAN`` of length n, or []."""
     match node:
         case ast.IfExp(
             ast.Compare(ast.Name(j), [ast.Lt()], [ast.Constant(n)]),

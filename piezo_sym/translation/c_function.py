@@ -26,9 +26,9 @@ from piezo_sym.translation.expressions import refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import LEAST, Key, Rows
 
-#: What may be written to: results, ledger rows, switching functions, margins.
+#: Arguments that may be written to: results, ledger rows, switching functions, margins.
 WRITTEN = ("out", "rows", "s", "m")
-#: What stands in `File.results` for rows that are not compared.
+#: The value in `File.results` for rows that are not compared with the proved system.
 NOT_COMPARED = ""
 
 
@@ -38,12 +38,12 @@ class CFunction:
 
     Parameters
     ----------
-    by_branches : whether choices are by branches alone; else they are by comparisons.
+    by_branches : whether branches alone make the choices; else comparisons do.
 
     Attributes
     ----------
-    switches : what is written of switching functions, by the branch that each decides.
-    places : what is written and not compared, by its place and bank.
+    switches : the switching functions that are written, by the branch that each decides.
+    places : place and bank of each value that is written but not compared.
     """
 
     def __init__(self, node: ast.FunctionDef, file: File, *, by_branches: bool = False) -> None:
@@ -68,7 +68,7 @@ class CFunction:
             raise NotShownError(f"{self.name} leaves numbers that were never written")
 
     def rows(self, roles: Collection[str] = WRITTEN) -> dict[Key, Value]:
-        """Return the rows that are written to some arguments."""
+        """Return the rows that the function writes to the arguments with some roles."""
         self.known.field.derived = self.name == "jacobian"
         for part in self.constants if "out" in roles else ():
             part.read()
@@ -80,7 +80,7 @@ class CFunction:
         return found
 
     def _roles(self, node: ast.FunctionDef) -> dict[str, str]:
-        """Return what the function's arguments are by name."""
+        """Return the role (x, u, p, out, ...) of each argument by its name; refuse other types."""
         words, file = self.file.signatures.get(self.name, "").split(), self.file
         types = dict.fromkeys(WRITTEN, f"{file.number} * restrict")
         types["p"] = f"const {file.known.iphs.model.name}_{file.record} * restrict"
@@ -130,7 +130,7 @@ class CFunction:
                 raise refused(node, "a statement")
 
     def _part_of(self, name: str, args: list[ast.expr]) -> None:
-        """Read a part, which has the same arguments and returns nothing; it calls no part."""
+        """Read a call of a part: it takes the function's own arguments and calls no part itself."""
         part, own, writes = self.file.parts[name], self.node, "out" in self.scope.roles.values()
         given = [ast.unparse(arg) for arg in args] == [arg.arg for arg in own.args.args]
         same = given and ast.unparse(part.args) == ast.unparse(own.args)
@@ -195,12 +195,12 @@ class CFunction:
         self.summed = outside
 
     def _kept(self, node: ast.expr) -> Deferred:
-        """Return what a variable or constant is set to; it is read even if nothing needs it."""
+        """Return the expression that a variable is set to; it is read even if nothing needs it."""
         self.constants.append(self.scope.defer(node))
         return self.constants[-1]
 
     def _part(self, n: int, node: ast.expr) -> Deferred:
-        """Return a part of a list; ``n < size ? part : (double)NAN`` is of lane n of a bank."""
+        """Return entry n of a list; ``n < size ? part : (double)NAN`` is of lane n of a bank."""
         outside = self.scope
         match node:
             case ast.IfExp(ast.Compare(lane, [ast.Lt()], [size]), part, ast.Name("NAN")):
@@ -249,14 +249,14 @@ class CFunction:
             self.written.append((role, key, self.scope.defer(node), added))
 
     def _switch(self, place: Value, node: ast.expr) -> None:
-        """Read a switching function, of each lane in a loop."""
+        """Read the assignment of a switching function, in a loop one per lane."""
         branch = self.scope.branch(place)
         if branch in self.switches or len(self.scope.lanes) > 1:
             raise refused(node, "a switching function that is not written once")
         self.switches[branch] = self._kept(node)
 
     def _is_least(self, role: str, place: ast.expr, at: Value, node: ast.expr) -> bool:
-        """Return whether it is a least value: ``out[n] = HUGE_VAL``, then ``min(out[n], ...)``."""
+        """Return whether it finds a minimum: ``out[n] = HUGE_VAL``, then ``min(out[n], ...)``."""
         n = int(at.constant) if at.constant is not None else -1
         key, scope = ("margins", n, LEAST), self.scope
         most, least = (

@@ -1,8 +1,8 @@
 """What names mean inside a C function: arguments, constants, sums over lanes, helpers.
 
-Input: expressions, and the names that stand where they are written.  Output: their values.  An
-expression is read where its value is needed: a choice does not need what it leaves out, and a stage
-chooses by switching functions that it writes later.
+Input: expressions, and the names known at the place of each.  Output: their values.  An expression
+is read only when its value is needed: a choice does not need the value that it does not take, and a
+stage chooses by switching functions that it writes later.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Proved
 from piezo_sym.translation.signs import compare, on_path
 
-#: The comparisons that macros of a step stand for.
+#: The comparison that each macro of a step stands for.
 _COMPARISONS = {"is_above": ">", "is_at_least": ">="}
-#: The macros of a step that are no functions of the C library.
+#: The macros of a step that do not stand for functions of the C library.
 _WORDS = {"wide", *_COMPARISONS}
 
 
@@ -34,9 +34,9 @@ class File:
     known: Proved
     number: str  # the type of its numbers
     record: str  # the type that holds parameters
-    signatures: Mapping[str, str]  # of each function, what its arguments are
-    calls: Mapping[str, str]  # the functions of the library that may be called, and what they are
-    #: Of a function and an argument, which rows are written to it; else the function's.
+    signatures: Mapping[str, str]  # the roles of each function's arguments, in order
+    calls: Mapping[str, str]  # library functions that may be called, and the functions they compute
+    #: By "function argument", the function of `Proved` whose rows are written; else the same one.
     results: Mapping[str, str] = field(default_factory=dict)
     helpers: dict[str, ast.FunctionDef] = field(default_factory=dict)  # functions of the file's own
     parts: dict[str, ast.FunctionDef] = field(default_factory=dict)  # of functions
@@ -46,10 +46,10 @@ class File:
 @final
 @dataclass(frozen=True, eq=False)
 class Deferred:
-    """An expression that is read where its value is needed, with the names where it is written.
+    """An expression that is read when its value is needed, with the scope in which it stands.
 
-    `kind` is the type of the helper's parameter that it is given for, if it is; `known` is what it
-    was read as, by the path of choices.
+    `kind` is the parameter's type if it is an argument of a helper, else ""; `known` has the value
+    read so far on each path of choices.
     """
 
     node: ast.expr
@@ -58,9 +58,9 @@ class Deferred:
     known: dict[Value | None, Read] = field(default_factory=dict)
 
     def read(self) -> Read:
-        """Return its value and shape."""
+        """Return the expression's value and shape."""
         field = self.scope.file.known.field
-        # a statement is executed whichever branch is chosen
+        # a statement is executed on every branch; only an argument of a helper may not be needed
         with on_path(field, field.path if self.kind else field.one):
             if field.path not in self.known:
                 read, test = self.scope.read, self.kind == "int"
@@ -70,17 +70,17 @@ class Deferred:
 
     @property
     def value(self) -> Value:
-        """Its value."""
+        """The expression's value."""
         return self.read()[0]
 
 
 @final
 @dataclass(eq=False)
 class CVariable:
-    """A variable: what it is set to, and what loops over the lanes of a bank add to it.
+    """A variable: its first value, and the terms that loops over the lanes of a bank add to it.
 
-    It is not read in a loop that adds to it (`is_open`), and not changed when it has been read.
-    `lanes` are those of the loops in which it is declared.
+    It must not be read in a loop that adds to it (`is_open`), nor changed after it has been read.
+    `lanes` has variable and bank of each loop in which it is declared.
     """
 
     start: Deferred | None
@@ -91,18 +91,18 @@ class CVariable:
 
     @cached_property
     def value(self) -> Value:
-        """Its value after the loops."""
+        """The variable's value after the loops."""
         assert self.start is not None
         field = self.start.scope.file.known.field
         sums = (field.lane_sum(part.value, bank) for part, bank in self.parts)
         return field.total((self.start.value, *sums))
 
 
-#: The place of a branch, of the first lane where it has some, and the bank of these.
+#: The place of a branch (with one per lane, of the first lane), and the bank or None.
 Branch = tuple[Value, str | None]
-#: A place among the branches: of one, or (True) of a pointer to one per lane.
+#: Whether a name points to one branch per lane, and its place in the array of branches.
 Place = tuple[bool, Value]
-#: Of a `Read`, lanes are behind a pointer; a list is an array.
+#: A `Read` with lanes is a pointer to them; a list is an array.
 Meaning = Read | Deferred | CVariable | Place | list[Deferred]
 
 
@@ -113,15 +113,15 @@ class Scope:
 
     file: File
     roles: Mapping[str, str]  # what each argument is: x, u, p, out, or of a stage g, b, rows, s, m
-    names: ChainMap[str, Meaning]  # what else a name means
-    #: The variables and banks of the loops, outermost first; in a list, the number of a lane.
+    names: ChainMap[str, Meaning]  # the meaning of all other names
+    #: (variable, bank) of each loop, outermost first; in a list, (index of the entry, bank).
     lanes: tuple[tuple[str, str], ...] = ()
-    #: What is written of switching functions, where choices are by branches alone.
+    #: The switching functions written so far if branches alone make the choices, else None.
     switches: dict[Branch, Deferred | Value] | None = None
 
     @cached_property
     def read(self) -> Expressions:
-        """The reader of expressions in which these names stand."""
+        """The reader of expressions in this scope."""
         known = self.file.known
         return Expressions(known.field, known.numbers, self._leaf, self.file.calls, True)
 
@@ -131,7 +131,7 @@ class Scope:
         return tuple(bank for _, bank in self.lanes)
 
     def declare(self, name: str, meaning: Meaning) -> None:
-        """Give a new name a meaning."""
+        """Give a name a meaning; refuse a name that has one."""
         taken = (self.names, self.roles, self.file.helpers, self.file.calls, _WORDS, {"zero"})
         if any(name in table for table in taken):
             raise NotShownError(f"{name} is declared twice")
@@ -148,7 +148,7 @@ class Scope:
         return inner
 
     def defer(self, node: ast.expr) -> Deferred:
-        """Return an expression that is written here; refuse names that stand for nothing yet."""
+        """Return an expression of this scope, to be read later; refuse names without a meaning."""
         parts = list(ast.walk(node))
         functions = [part.func for part in parts if isinstance(part, ast.Call)]
         file, called = self.file, set(map(ast.unparse, functions)) - _WORDS
@@ -166,7 +166,7 @@ class Scope:
         return Deferred(node, self)
 
     def meaning(self, kind: str, node: ast.expr) -> Meaning:
-        """Return what a constant of some kind is: a number, an index, a pointer."""
+        """Return the meaning of a constant that is declared as a number, an index or a pointer."""
         known = self.file.known
         match kind, node:
             case "index", _:
@@ -203,7 +203,7 @@ class Scope:
             case ast.Name("zero") if real:
                 return known.field.zero, PLAIN
             case ast.Attribute(ast.Name(p), name) if self.roles.get(p) == "p":
-                value, whole = known.parameter(name.rstrip("_"))  # names of a spec have none
+                value, whole = known.parameter(name.rstrip("_"))  # no name of a spec ends with _
                 return value, WHOLE if whole else PLAIN
             case ast.Subscript(ast.Name(x), place) if self.roles.get(x) in {"x", "u", "g"}:
                 return known.part(self.roles[x], self.read.whole(place), bank=False), PLAIN
@@ -225,7 +225,7 @@ class Scope:
         raise refused(node, "an expression")
 
     def _inlined(self, helper: ast.FunctionDef, args: list[ast.expr], node: ast.expr) -> Value:
-        """Return what a helper gives for some arguments."""
+        """Return the value of a helper for some arguments."""
         if len(args) != len(helper.args.args):
             raise refused(node, "a call with other arguments")
         names = ChainMap[str, Meaning]()
@@ -237,13 +237,13 @@ class Scope:
         raise refused(node, "a call of what is more than an expression")
 
     def branch(self, place: Value) -> Branch:
-        """Return what branch stands at a place, of each lane in a loop."""
+        """Return the branch at a place; in a loop, the place of the first lane's, and the bank."""
         if not self.banks:
             return place, None
         return place - self.file.known.field.name("index", self.banks[0]), self.banks[0]
 
     def _branch(self, condition: ast.expr, switches: dict[Branch, Deferred | Value]) -> Value:
-        """Return 1 where a branch is taken: ``is_above(NAME, 0.0)``, in a loop ``NAME[j]``."""
+        """Return 1 where a branch is taken: ``is_above(NAME, 0.0)``, or ``NAME[j]`` in a loop."""
         name, bank = "", None
         match condition:
             case ast.Call(ast.Name("is_above"), [ast.Name(shared), ast.Constant(0.0)]):
@@ -258,7 +258,7 @@ class Scope:
                 branch = place, bank
             case _:
                 raise refused(condition, "a choice by something else than a branch")
-        switch = switches.pop(branch, None)  # while it is read, it is nobody's branch
+        switch = switches.pop(branch, None)  # it must not choose by its own sign
         if switch is None:
             raise refused(condition, "a branch of no switching function, or of its own")
         if isinstance(switch, Deferred):

@@ -8,15 +8,15 @@ by function and row.  The grammar:
     helper      static inline real power_N_of(real z) { return expression; }
     table       enum { NAME = n, ... };    static const int NAME[] = { n, ... };
 
-Macros and fixed parts are those of `c_step_parts`. A mean that a stage is given is that of its
-integrand: a co-state and what is free of the state. A branch is 1 where its switching function is
-positive, else 0; a stage chooses by branches alone: ``chosen(NAME > 0.0, value, value)``. `slopes`
-and most tables behind it serve Newton's method alone, and `bends`, which a line ``#define BENDS``
-announces, says where the engine splits means: of them nothing is said, but that they are in the
-grammar, and that what they write fills its array. Where the system has stops, a table tells of each
-the bank, whether its lanes have drives of their own, and its inner state; `path_parameters` are
-stiffness and limit of the inner state, `drives` the rates of coordinates. Where there are stores
-and bodies, `costates` are those of all states, and a table tells which states are entropies.
+Macros and fixed parts are those of `c_step_parts`. A mean that is given to a stage is the mean of
+its integrand: a co-state plus terms that do not depend on the state. A branch is 1 where its
+switching function is positive, else 0; in a stage branches alone make the choices:
+``chosen(NAME > 0.0, value, value)``. `slopes` and most tables after it serve Newton's method alone;
+`bends`, which a line ``#define BENDS`` announces, tells the engine where to split means. These are
+only checked to be in the grammar, and to fill their arrays. If the system has stops, a table has
+for each its bank, whether each lane has its own drive, and its inner state; `path_parameters` are
+stiffness and limit of the inner state, `drives` the rates of coordinates. If there are stores and
+bodies, `costates` are those of all states, and a table lists the states that are entropies.
 """
 
 import ast
@@ -60,7 +60,7 @@ def read_step(text: str, known: Proved) -> dict[Key, Value]:
 
 @final
 class _Step:
-    """Reads a file: `functions` and `tables`, by their names without the model's."""
+    """Reads a step: `functions` and `tables`, by their names without the model's name."""
 
     def __init__(self, module: ast.Module, file: File) -> None:
         self.file, self.iphs, self.field = file, file.known.iphs, file.known.field
@@ -84,7 +84,7 @@ class _Step:
                     raise refused(node, "a part of a step")
 
     def _own(self, name: str) -> str:
-        """Return the name of a function or table without the model's; refuse one that is there."""
+        """Return a function's or table's name without the model's name; refuse one used before."""
         prefix = f"{self.iphs.model.name}_"
         word = name.removeprefix(prefix)
         if not name.startswith(prefix) or word in self.functions or word in self.tables:
@@ -92,16 +92,16 @@ class _Step:
         return word
 
     def _power(self, node: ast.FunctionDef) -> None:
-        """Take a function that is a whole power."""
+        """Record a helper after checking that it is an integer power."""
         add_helper(node, self.file, "power_[2-8]_of")
         n = int(node.name.split("_")[1])
         if not helper_is(self.file, node.name, lambda z: self.field.whole_power(z, n), 1):
             raise NotShownError(f"{node.name} is not shown to be a power")
 
     def rows(self, *, bends: bool) -> dict[Key, Value]:
-        """Return what is written: by a stage, its margins by comparisons and the rest by branches.
+        """Return the rows written; in a stage, margins choose by comparisons, the rest by branches.
 
-        An integrand is returned without what its mean adds to that of its co-state.
+        An integrand is returned as its co-state alone, without the terms free of the state.
         """
         more = ["path_parameters", "drives"] if self.file.known.paths else []
         more += ["costates"] if "costates" in self.file.known.slots else []
@@ -126,7 +126,7 @@ class _Step:
         return found | {("strict", n): self.field.number(s) for n, s in of_margins}
 
     def _told(self) -> None:
-        """Check what tables tell the engine: who takes losses, jumps, what integrands read."""
+        """Check the tables on the body that takes losses, on jumps, and on states in integrands."""
         iphs, known = self.iphs, self.file.known
         ports = [port for _, port in iphs.circuit.of(Storage, Body)]
         bodies = [n for n, port in enumerate(ports) if isinstance(port, Body)]
@@ -147,7 +147,7 @@ class _Step:
         return CFunction(self.functions[name], self.file, by_branches=by_branches)
 
     def _integrands(self) -> dict[Key, Value]:
-        """Read what means are of; each is then the mean of a co-state and what is added to it."""
+        """Read the integrands; a given mean is then that of its co-state plus the other terms."""
         with reading(self.field, "integrands"):
             rows = self._function("integrands").rows()
         known, model = self.file.known, self.iphs.model
@@ -168,7 +168,7 @@ class _Step:
     def _sizes(
         self, branches: list[Branch], slopes: list[Branch], bends: list[Branch] | None
     ) -> None:
-        """Read the sizes of arrays."""
+        """Check the function of array sizes against the branches, slopes and bends written."""
         node, found = self.functions["sizes"], list[Value]()
         roles = dict(zip((arg.arg for arg in node.args.args), ("p", "out"), strict=True))
         types = [kind_of(part) for part in (*(a.annotation for a in node.args.args), node.returns)]
@@ -200,7 +200,7 @@ class _Step:
             raise NotShownError("the sizes of the step's arrays are not the system's")
 
     def _end(self, written: list[Branch]) -> Value:
-        """Return how many numbers are written: their places have to follow on one another."""
+        """Return how many numbers are written; refuse gaps between their places, or overlaps."""
         end, left = self.field.zero, dict(written)
         while end in left:
             bank = left.pop(end)
@@ -211,7 +211,7 @@ class _Step:
 
 
 def _number(node: ast.expr) -> int:
-    """Return a whole number."""
+    """Return the integer of a literal, which may have a minus sign."""
     match node:
         case ast.Constant(int() as number):
             return number

@@ -1,7 +1,7 @@
-"""Parts of a step's text that are as they have to be, word for word: macros, records, marks.
+"""Parts of a step's text that are checked word for word: macros, records, preprocessor lines.
 
 Input: the text of ``<model>_step.c``, and the proved stage.  Output: the macros that it begins
-with, the functions that they name, and the parts that readers leave out.
+with, the functions that they name, and the fixed parts, which are not read as C.
 """
 
 import re
@@ -13,7 +13,7 @@ from piezo_sym.spec.tables import banks
 from piezo_sym.translation.known import Proved
 
 _LIBRARY = {record.in_c: name for name, record in RECORDS.items() if record.smooth}
-#: The macros of a step for numbers of one run; each function that is called adds a line.
+#: The macros of a step for numbers of one run; a line is added per library function called.
 MACROS = """\
 #if !defined(REAL_WIDTH) /* numbers of one run; run/engine has vectors of many */
 #define REAL_WIDTH 1
@@ -47,7 +47,7 @@ static void {model}_give({model}_reals *to, const {model}_parameters *from, int 
 {given}}}
 """
 BENDS = "#define BENDS\n"
-#: Around what is for run/engine alone.
+#: Encloses the text that is for run/engine alone.
 ENGINE = """\
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
 #define COSTATES
@@ -56,7 +56,7 @@ END_OF_ENGINE = "#endif /* of what run/engine takes */\n"
 
 
 def macros_of(text: str) -> tuple[str, Mapping[str, str]]:
-    """Return the macros of a step, and the functions of laws by the names that they give them."""
+    """Return the macros of a step, and the functions of laws by the names that macros give them."""
     lines = {f"#define {name}_of {name}\n": name for name in _LIBRARY}
     lines = {line: name for line, name in lines.items() if line in text}
     calls = {f"{name}_of": _LIBRARY[name] for name in lines.values()}
@@ -75,7 +75,7 @@ def fixed_parts(text: str, known: Proved) -> Iterator[str]:
 
 
 def _data(text: str, circuit: Circuit) -> list[str]:
-    """Return the record of parameters and what fills it, with the names that the text has."""
+    """Return the record of parameters and the functions that fill it, with the text's own names."""
     model, own = circuit.model, circuit.lane_parameters
     counts = {f"{bank}_count": "" for bank in banks(model)}
     fields, places, given = "", "", ""
@@ -97,7 +97,7 @@ def _data(text: str, circuit: Circuit) -> list[str]:
 
 
 def _path_table(known: Proved) -> Iterator[str]:
-    """Yield the lines by which a step tells of its stops, if the system has some."""
+    """Yield the lines of the table of stops in a step, if the system has stops."""
     banks, name = [*known.sizes], known.iphs.model.name
     states = [slot.label for slot in known.iphs.system.states]
     lines = [

@@ -46,8 +46,8 @@ _FUNCTION = re.compile(rf"{_TYPE}(\w+) \( ([^()]+) \)")
 def python_of(text: str, model: str, macros: str = "", known: Sequence[str] = ()) -> ast.Module:
     """Return a C file as Python.
 
-    Its header has the name of the `model`; `macros` stand behind the headers; `known` are parts of
-    the text that are as expected, and left out.
+    It includes the header of `model`; `macros` is the text expected after the includes; the parts
+    in `known` are expected word for word, and left out.
     """
     head = re.match(_HEAD.replace("{model}", re.escape(model)), text)
     begins = head is not None and text.startswith(macros, head.end())
@@ -77,7 +77,7 @@ def python_of(text: str, model: str, macros: str = "", known: Sequence[str] = ()
 
 
 def _lines(code: str, marks: Sequence[str]) -> list[str]:
-    """Return the lines in Python of tokens with a space between each two."""
+    """Return the lines of Python for C tokens that are separated by spaces."""
     code = code.replace(" ( double ) NAN ", " NAN ")
     code = re.sub(r"enum {([^{}]*)}", lambda match: f"enum{match[1]}".replace(",", "; enum"), code)
     code = _LOOP.sub(_loop, re.sub(r"= {([^{}]*)}", r"= [\1]", code))
@@ -140,9 +140,9 @@ def _statement(text: str) -> str:
 
 
 def _chosen(text: str) -> str:
-    """Return an expression, ``?`` and ``:`` of C replaced where they stand in no brackets.
+    """Return an expression with C's ``? :`` outside brackets replaced by Python's ``if else``.
 
-    Parts of a list are expressions.
+    In a list this is done for each entry.
     """
     if text.startswith("[ ") and text.endswith(" ]"):
         return f"[{', '.join(map(_chosen, _parts(text[2:-2])))}]"
@@ -156,7 +156,7 @@ def _chosen(text: str) -> str:
 
 
 def _parts(text: str) -> Iterator[str]:
-    """Yield what commas outside brackets separate; behind the last one nothing may stand."""
+    """Yield the parts between commas outside brackets; the text may end with a comma."""
     part = ""
     for piece in text.removesuffix(" ,").split(" , "):
         part = f"{part} , {piece}" if part else piece

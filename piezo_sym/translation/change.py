@@ -1,8 +1,8 @@
 """Values with names replaced, moved to another lane, and differentiated.
 
 Input: values.  Output: values of the same field.  A derivative in a state of one lane of a bank has
-two parts: `derivative` is that of the lane's own terms, `across` that of sums over the bank, which
-every lane has.  The derivative of a sign is 0: derivatives hold inside the branches of a law.
+two parts: `derivative` is that of the lane's own terms, `across` that of sums over the bank, equal
+in all lanes.  The derivative of a sign is 0: derivatives hold inside the branches of a law.
 """
 
 import ast
@@ -15,7 +15,7 @@ from piezo_sym.translation.field import Exponent, Generator, GeneratorField, Not
 from piezo_sym.translation.functions import call, power
 from piezo_sym.translation.signs import compare, on_path, sign_of
 
-#: The functions that rules of records may call.
+#: The functions that the derivatives in function records may call.
 _CALLS = {name: name for name, record in RECORDS.items() if record.smooth}
 
 
@@ -91,7 +91,7 @@ Inner = Callable[[Generator], Value]
 
 
 def derivative(value: Value, state: int) -> Value:
-    """Return the derivative in a name, without that of sums over the name's own bank."""
+    """Return the derivative with respect to a name, except of sums over the name's own bank."""
     field = value.field
     bank = next(iter(field.gens[state].lanes), ("", 0))[0]
 
@@ -104,7 +104,7 @@ def derivative(value: Value, state: int) -> Value:
 
 
 def across(value: Value, state: int, lane: int) -> Value:
-    """Return only the derivative of the sums over a bank, in a name of one of its lanes."""
+    """Return the derivative of only the sums over a bank, with respect to a name of one lane."""
     field = value.field
     bank = next(iter(field.gens[state].lanes))[0]
 
@@ -122,7 +122,7 @@ def across(value: Value, state: int, lane: int) -> Value:
 
 
 def _chain(value: Value, state: int, own: Value, of_sum: Inner) -> Value:
-    """Return a derivative by the chain rule, given those of the name itself and of sums."""
+    """Return a derivative by the chain rule; `own` is that of the name itself, `of_sum` of sums."""
     field, parts = value.field, list[Value]()
     if state not in value.parts:
         return field.zero
@@ -152,7 +152,7 @@ def _slope(field: GeneratorField, g: int, state: int, own: Value, of_sum: Inner)
 
 
 def _of_rule(rule: str, words: Mapping[str, Value]) -> Value:
-    """Return the value of a derivative as a record states it."""
+    """Return the value of a derivative that a function record states as text."""
 
     def leaf(node: ast.expr) -> Read:
         return words[ast.unparse(node)], PLAIN

@@ -74,7 +74,7 @@ def proved_step(iphs: IPHS) -> Proved:
 
 
 def _stops(iphs: IPHS) -> Iterator[Stop]:
-    """Yield where each stop stands, its store and its slip."""
+    """Yield the element, the store and the slip of each stop."""
     stores = {port.state: port for _, port in iphs.circuit.of(Storage)}
     for placed, port in iphs.circuit.of(DissipativePort):
         if port.limit is not None:
@@ -84,7 +84,7 @@ def _stops(iphs: IPHS) -> Iterator[Stop]:
 def _given(
     read: SystemReader, placed: Placed, store: Storage, slip: DissipativePort
 ) -> Iterator[Slot]:
-    """Yield what a stage is given of a stop."""
+    """Yield the slots of the values of a stop that are given to a stage; add them to the names."""
     given = ("effort", "slip", "heat", "share")
     slots = tuple(Slot(f"{what} of {placed.element}", placed.bank) for what in given)
     effort, moved, heat, share = slots
@@ -98,7 +98,7 @@ def _given(
 
 
 def _heats(read: SystemReader, stops: tuple[Stop, ...]) -> Iterator[tuple[sp.Expr, sp.Symbol]]:
-    """Yield the product of each stop's effort and slip, and what the mean of it is written by."""
+    """Yield each stop's product effort*slip, and the symbol of the mean heat that replaces it."""
     for placed, store, slip in stops:
         heat = sp.Dummy("heat", real=True)
         read.known[heat] = read.names[f"heat of {placed.element}"]
@@ -111,7 +111,7 @@ def _paths(
     slots: dict[str, tuple[Slot, ...]],
     values: dict[Key, Value],
 ) -> Iterator[tuple[str, str | None, bool]]:
-    """Yield the row of each stop's table; add the rows of what the engine asks of it."""
+    """Yield each stop's row of the table; add the rows of its parameters and its drive."""
     for n, (placed, store, slip) in enumerate(stops):
         slope, drive = derivative(store.law, store.state), read(read.iphs.symbols[slip.rate])
         assert slip.limit is not None
@@ -151,7 +151,7 @@ def _shown_affine(value: Value, states: frozenset[int]) -> bool:
 
 
 def _ledger(read: SystemReader, listed: dict[str, list[Value]]) -> Iterator[tuple[Slot, Value]]:
-    """Yield the rows of the ledger: powers, heats, entropy produced and brought."""
+    """Yield the rows of the ledger: powers, heats, entropy produced, entropy from exchanges."""
     system = read.iphs.system
     parts = {"power of": "supply", "heat of": "heat", "entropy produced by": "entropy_production"}
     for words, function in parts.items():

@@ -24,7 +24,7 @@ from piezo_sym.translation.signs import choose, compare, on_path, side_of
 MOST_MAGNITUDE = 300
 MOST_WHOLE = 2**31 - 1
 _ARGUMENTS = {"choice": 3, "pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
-#: NumPy's functions that return integers, which may overflow, for integers.
+#: NumPy's functions that return integers for integer arguments; these may overflow.
 _INTEGERS = frozenset({"abs", "sign", "minimum", "maximum", "clip", "sum"})
 _OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
@@ -32,17 +32,17 @@ _OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "=
 @final
 @dataclass(frozen=True)
 class Shape:
-    """What kind of value a text has."""
+    """The kind of an expression (number, integer, condition, array), and the banks of its axes."""
 
     #: "" for a number of one state, "whole" for an integer, "test" for a condition; for arrays
     #: "maybe" (lanes, if the parameters of a bank are lists), "lanes", "row" and "column" (lanes of
     #: the one or other axis of a matrix) and "pair".
     kind: str = ""
-    #: bank, other: of the lanes; of a pair, the row's and the column's.
+    #: bank, other: the bank of the lanes; for a pair, the banks of row and column.
     bank: str = ""
     other: str = ""
-    #: Whether it is a choice between equal integers. Only what is real anyway may have it as a
-    #: part: arrays of integers wrap round, and C divides integers as such.
+    #: Whether it is a choice between equal integers, allowed only as a part of a real expression:
+    #: arrays of integers wrap round, and C truncates their quotients.
     integers: bool = False
 
     @property
@@ -70,7 +70,7 @@ class Expressions:
     numbers: Mapping[float, Fraction]  # see `Proved`
     #: Reads what the language or its names give a meaning: names, subscripts, other calls.
     leaf: Leaf
-    functions: Mapping[str, str]  # the name of each function in the text, and what it is
+    functions: Mapping[str, str]  # the function of laws behind each function name in the text
     whole_division: bool  # whether a quotient of integers is an integer, as in C
 
     def __call__(self, node: ast.expr) -> Read:
@@ -137,7 +137,7 @@ class Expressions:
         return value
 
     def choice(self, condition: ast.expr, then: ast.expr, other: ast.expr) -> Read:
-        """Return one value or the other; each is needed only where it is chosen."""
+        """Return the value of a choice; either of its two values need exist only where chosen."""
         field, test, parts = self.field, self.test(condition), list[Read]()
         for chosen, node in ((test, then), (field.one - test, other)):
             with on_path(field, field.path and field.path * chosen):
@@ -200,7 +200,7 @@ class Expressions:
         raise refused(node, "an operator")
 
     def _bounded(self, read: Read, node: ast.expr) -> Read:
-        """Return an integer that neither language wraps round, or a number."""
+        """Return a value as it is; refuse an integer that may wrap round in C or in NumPy."""
         if read[1] == WHOLE and abs(read[0].constant or Fraction(0)) > MOST_WHOLE:
             raise refused(node, "an integer that is too large")
         return read
@@ -248,12 +248,12 @@ class Expressions:
 
 
 def refused(node: ast.AST, what: str) -> NotShownError:
-    """Return that a piece of text is refused, to be raised."""
+    """Return the error, to be raised, that `what` at a node is outside the grammar."""
     return NotShownError(f"{what} outside the grammar: {ast.unparse(node)[:60]}")
 
 
 def joined(left: Shape, right: Shape, node: ast.AST) -> Shape:
-    """Return the shape of what is made of two shapes."""
+    """Return the shape of an operation on values of two shapes."""
     if left == right:
         return left
     if not left.is_array or not right.is_array:

@@ -23,12 +23,12 @@ Lane = tuple[str, int]  # a bank, and which of its lanes: 0 a row's, 1 a column'
 MOST_WORK = 10_000_000
 MOST_BITS = 20_000
 MOST_POWER = 64
-#: A named value of a text becomes a letter if it has more terms than this.
+#: A named value in printed text becomes a letter if it has more terms than this.
 MOST_SPELLED = 6
 
 
 class NotShownError(Exception):
-    """A text is outside the grammar, or a value is too large; nothing is known of it then."""
+    """A text is outside the grammar, or a value is too large, so that nothing is shown of it."""
 
 
 @final
@@ -133,8 +133,8 @@ class GeneratorField:
     needs : the conditions of the divisions, roots and logarithms read so far.
     states : the names by which derivatives are taken.
     signed : generators that are positive (2) or not negative (1).
-    counts : those that are sizes of banks, positive even outside the domain.
-    assumed : other values of which the domain says the same.
+    counts : as `signed`, for sizes of banks, which are positive even outside the domain.
+    assumed : values other than generators that the domain makes positive (2) or not negative (1).
     signs, forms, factors, never, asked, zeros : kept by `signs`, `zero` and `possible`.
     unknown : how often a solver gave no answer.
     work : how many products of two terms were formed.
@@ -192,7 +192,7 @@ class GeneratorField:
         return self.raised(known, 1)
 
     def letter(self, value: Value) -> Value:
-        """Return a letter for a long value without signs, the same for equal values; or itself."""
+        """Return a letter for a long value without signs, one per distinct value; else `value`."""
         if len(value.terms) <= MOST_SPELLED:
             return value
         chosen = any(self.gens[g].kind == "sign" for g in value.generators())
@@ -237,7 +237,7 @@ class GeneratorField:
         return self.total([Value(self, terms), *more]) if more else Value(self, terms)
 
     def _join(self, m: Mono, n: Mono) -> tuple[Mono, Value | None] | None:
-        """Return a product of monomials: one monomial, and a sum to multiply it with, or none."""
+        """Return a product as a monomial and a sum (or None) to multiply by; None if it is zero."""
         found = dict(m)
         for g, e in n:
             found[g] = found.get(g, 0) + e
@@ -260,7 +260,7 @@ class GeneratorField:
         return tuple(sorted(found.items())), extra
 
     def whole_power(self, base: Value, n: int) -> Value:
-        """Return an integer power; a negative one of a number only."""
+        """Return an integer power; a negative exponent only for a single term."""
         if abs(n) > MOST_POWER and (len(base.terms) != 1 or base.constant not in {None, 1, -1}):
             raise NotShownError("a power is too large")
         if len(base.terms) == 1:

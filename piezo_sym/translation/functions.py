@@ -26,7 +26,7 @@ def power(base: Value, exponent: Exponent) -> Value:
     """Return a rational power."""
     if exponent.denominator == 1 and exponent >= 0:
         return base.field.whole_power(base, exponent.numerator)
-    if exponent.denominator != 1 and exponent < 0:  # as laws and texts divide by roots
+    if exponent.denominator != 1 and exponent < 0:  # 1/root, as laws and printed text write it
         return power(power(base, -exponent), -1)
     q = exponent.numerator if exponent.denominator == 1 else exponent
     return lifted(partial(_power, q), base)
@@ -55,7 +55,7 @@ def _power(q: Exponent, base: Value) -> Value:
 
 
 def divisors(field: GeneratorField, g: int) -> Iterator[Value]:
-    """Yield what must not be zero where a generator divides: for a letter what it stands for."""
+    """Yield the values that must not be zero where a generator divides; letters are written out."""
     gen = field.gens[g]
     if gen.kind != "letter" or gen.arg is None:
         yield _base(field, g)
@@ -86,7 +86,7 @@ def _root(field: GeneratorField, size: Fraction, q: Exponent) -> Value:
 
 
 def _even(value: Value, q: Exponent) -> tuple[Value, Value]:
-    """Return a value without factors such as x**2, and the root of those, such as ``abs(x)``."""
+    """Return a value without even factors such as x**2, and their power q, such as ``abs(x)``."""
     field, made = value.field, value.field.one
     for g in value.generators():
         e = min(dict(mono).get(g, 0) for mono in value.terms)
@@ -104,7 +104,7 @@ def _needs(kind: str, value: Value) -> None:
 
 
 def _undefined(field: GeneratorField, kind: str) -> Value:
-    """Return 1/0 or log(0): a name of which nothing is known; where it is chosen, it is missed."""
+    """Return 1/0 or log(0) as a new name, and note a need that fails wherever it is chosen."""
     if field.path is not None:
         field.needs[Need(kind, field.zero, field.path, field.derived, field.outside)] = None
     return field.generator("name", None, (f"not {kind}", None, 0))
@@ -151,8 +151,8 @@ def _log(arg: Value) -> Value:
 def _log_of_product(arg: Value) -> Value:
     """Return the sum of the logarithms of factors of known signs; else a logarithm of the product.
 
-    Of a factor a < 0, with a whole exponent e, it is that of -a > 0: a**e = (-1)**e (-a)**e.  If
-    the number, with these signs, is not positive, the domain does not keep the product above 0.
+    For a factor a < 0 with an integer exponent e it takes log(-a), as a**e = (-1)**e (-a)**e.  If
+    the coefficient, with these signs, is not positive, the product is not shown to be positive.
     """
     field, logs = arg.field, list[Value]()
     number, common, rest = primitive(arg, partly=False)
@@ -171,7 +171,7 @@ def _log_of_product(arg: Value) -> Value:
 
 
 def _base(field: GeneratorField, g: int) -> Value:
-    """Return what a generator is: for a power of a sum that sum, which is in normal form."""
+    """Return a generator as a value in normal form; for a power of a sum, that sum."""
     gen = field.gens[g]
     return gen.arg if gen.kind == "power" and gen.arg else field.raised(g, 1)
 

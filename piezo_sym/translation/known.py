@@ -18,7 +18,7 @@ from piezo_sym.iphs import IPHS
 from piezo_sym.translation.field import GeneratorField, Need, NotShownError, Value
 from piezo_sym.translation.system_reader import rounded
 
-#: A function, its row, and for an entry its column and whether it is of equal lanes.
+#: A function and its row; for a Jacobian's entry also its column, and `SAME` or `ALL` lanes.
 Key = tuple[str | int, ...]
 LEAST, ALL, SAME = "least over lanes", "all lanes", "equal lanes"
 
@@ -26,7 +26,7 @@ LEAST, ALL, SAME = "least over lanes", "all lanes", "equal lanes"
 @final
 @dataclass(frozen=True)
 class Layout:
-    """The slots of an array, and where each starts; the last place is the array's size."""
+    """The slots of an array, and the place where each starts; the last place is the size."""
 
     slots: tuple[Slot, ...]
     places: tuple[Value, ...]
@@ -36,7 +36,7 @@ class Layout:
         return {place: n for n, place in enumerate(self.places[:-1])}
 
     def at(self, place: Value, *, bank: bool) -> int:
-        """Return the slot that starts at a place, a bank's or another."""
+        """Return the index of the slot that starts at a place; `bank`: whether it is a bank's."""
         n = self._starts.get(place)
         if n is None or bool(self.slots[n].bank) != bank:
             raise NotShownError("a place where no row starts")
@@ -52,19 +52,19 @@ class Proved:
     field: GeneratorField  # of all values
     #: Parameters, states and inputs, in lane 0 where they have one per lane.
     names: Mapping[str, Value]
-    banks: Mapping[str, str]  # the bank of each of these that has
+    banks: Mapping[str, str]  # the bank of each of these that has one value per lane
     slots: Mapping[str, tuple[Slot, ...]]  # the rows of each function
     values: Mapping[Key, Value]  # by function and row; what is not listed is zero
     needs: tuple[Need, ...]  # what the laws divide by, and take roots and logarithms of
     #: The margin of each condition of the domain, and whether the condition is strict.
     margins: tuple[tuple[Value, bool], ...]
-    means: Mapping[str, Value]  # in a stage: the co-state by the name of its mean
+    means: Mapping[str, Value]  # in a stage: each co-state, by the name of its mean
     #: In a stage: each stop's inner state, its bank, and whether each lane has its own drive.
     paths: tuple[tuple[str, str | None, bool], ...] = ()
 
     @cached_property
     def numbers(self) -> Mapping[float, Fraction]:
-        """The numbers of the spec that are rounded when they are printed, by the printed one."""
+        """The exact numbers of the spec that are rounded in print, by the printed number."""
         return dict(rounded(self.iphs))
 
     @cached_property
@@ -97,7 +97,7 @@ class Proved:
         return self.names[name], False
 
     def part(self, role: str, place: Value, *, bank: bool) -> Value:
-        """Return the part of x, u or g at a place: of a bank's lane 0, or one that lanes share."""
+        """Return the entry of x, u or g at a place; with `bank`, that of lane 0 of a bank."""
         layout = self.layouts[role]
         return self.names[layout.slots[layout.at(place, bank=bank)].label]
 
@@ -108,13 +108,13 @@ LONG = 10**9
 
 @final
 class Rows:
-    """What one function writes.
+    """The rows that one function writes.
 
     Attributes
     ----------
-    layout : of its result.
-    found : what was written.
-    zeros : whether what is not written is zero.
+    layout : the layout of the function's result.
+    found : the values written so far.
+    zeros : whether entries that are not written are zero.
     """
 
     def __init__(self, known: Proved, name: str) -> None:
@@ -136,7 +136,7 @@ class Rows:
         return self.layout.places[-1]
 
     def keep(self, key: Key, value: Value, *, added: bool = False) -> None:
-        """Take what is written; refuse what is written over, or added to nothing."""
+        """Keep a written value; refuse to overwrite one, or to add to one that is not there."""
         matrix = self.name == "jacobian"
         twin = (*key[:-1], SAME if key[-1] == ALL else ALL)
         again = not added and (key in self.found or (matrix and twin in self.found))
@@ -145,10 +145,10 @@ class Rows:
         self.found[key] = self.found[key] + value if key in self.found else value
 
     def key_at(self, place: Value, banks: tuple[str, ...]) -> Key | None:
-        """Return what stands at a place that loops over the lanes of some banks write.
+        """Return the key of the row at a place, in loops over the lanes of some banks; or None.
 
-        The place says which slots it is where every bank has `LONG` lanes; it then has to be
-        theirs for every size.
+        The slots are found as if every bank had `LONG` lanes; then the place must be theirs for
+        banks of any size.
         """
         matrix, at, total = self.name == "jacobian", self._if_long(place), self.known.field.zero
         found = [
@@ -169,7 +169,7 @@ class Rows:
         return (self.name, *slots, *kind) if [*banks] == lanes and total == place else None
 
     def _if_long(self, place: Value) -> int:
-        """Return a place of the first lanes where every bank has `LONG` lanes."""
+        """Return the place, in the first lanes, if every bank has `LONG` lanes."""
         total = Fraction(0)
         for mono, c in place.terms.items():
             total += Fraction(c) * prod((LONG * (g in self._counts)) ** int(e) for g, e in mono)

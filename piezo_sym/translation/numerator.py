@@ -18,8 +18,8 @@ from piezo_sym.translation.functions import power
 from piezo_sym.translation.signs import has_sign, on_path, sign_of
 
 MOST_TERMS = 200_000
-#: FLINT multiplies two terms this many times faster than `GeneratorField`, where a product takes
-#: this many times less than it takes to pass a term to FLINT.
+#: Costs, in products of two terms by `GeneratorField`: FLINT multiplies two terms at 1/FASTER; to
+#: pass a term to FLINT costs SLOWER.
 FASTER, SLOWER = 30, 3
 
 
@@ -28,9 +28,9 @@ class _Roots:
 
     Attributes
     ----------
-    order : the generators, by their indices; those in the argument of another one come before it.
-    place : where each of them stands in `order`.
-    whole : d of each.
+    order : the indices of the generators; a generator comes after those in its argument.
+    place : the position of each generator in `order`.
+    whole : the exponent d of each generator.
     ring : the polynomials in the variables y.
     """
 
@@ -47,7 +47,7 @@ class _Roots:
         self.ring = fmpq_mpoly_ctx.get(names, Ordering.lex)
 
     def of(self, value: Value) -> tuple[fmpq_mpoly, fmpq_mpoly]:
-        """Return a polynomial and a monomial whose ratio is the value, powers being variables."""
+        """Return a polynomial and a monomial in y whose ratio is the value."""
         self.field.spend(SLOWER * len(value.terms))
         least = [0] * len(self.order)
         rows = []
@@ -62,7 +62,7 @@ class _Roots:
         return self.ring.from_dict(shifted), self.ring.from_dict({tuple(map(neg, least)): 1})
 
     def written_out(self, value: fmpq_mpoly, g: int) -> fmpq_mpoly:
-        """Return a multiple of a polynomial, without whole powers of a generator."""
+        """Return a multiple of a polynomial with integer powers of a generator written out."""
         n, whole, arg = self.place[g], self.whole[g], self.gens[g].arg
         assert arg is not None
         most = value.degrees()[n] // whole
@@ -105,8 +105,8 @@ class _Roots:
 def vanishes(value: Value) -> bool:
     """Return whether a value's numerator has no terms, its generators taken as independent.
 
-    Powers of sums are written out, and if it has terms then, letters: one is replaced by a name
-    where it can be, which multiplies nothing out, and written out where not.
+    Powers of sums are written out first.  If terms are left, a letter is replaced by a name if
+    possible, which keeps products short; else all letters are written out.
     """
     if not value.terms:
         return True
@@ -123,8 +123,8 @@ def vanishes(value: Value) -> bool:
 def renamed(value: Value, letter: int) -> Value | None:
     """Return a value with a name in place of a letter that is linear in a state, else None.
 
-    Its factor is not zero, and the state is expressed by the name: as the name takes all values
-    when the state does, an equation holds for all values of the one if for all of the other.
+    The letter is rest + factor*state with a factor that is nowhere zero, and the state is expressed
+    by the new name: an equation holds for all values of the state if it does for all of the name.
     """
     field, arg = value.field, value.field.gens[letter].arg
     assert arg is not None
@@ -137,21 +137,21 @@ def renamed(value: Value, letter: int) -> Value | None:
             bank, lane = next(iter(arg.lanes), (None, 0))
             new = field.name(f"letter {letter}", bank, lane)
             field.states |= new.parts
-            with suppress(NotShownError):  # the name would come into a sum over lanes
+            with suppress(NotShownError):  # if the name would occur in a sum over lanes
                 return put(value, {letter: new, g: (new - rest) * inverse(factor)})
     return None
 
 
 def inverse(value: Value) -> Value:
-    """Return 1/value; nothing is noted of its divisor."""
+    """Return 1/value without noting that the value must not be zero."""
     with on_path(value.field, None):
         return power(value, Fraction(-1))
 
 
 def vanishes_with(value: Value, other: Value) -> bool:
-    """Return whether a value is shown to be zero where another is: a multiple of its numerator.
+    """Return whether a value is shown to be zero wherever another value is.
 
-    None of its denominators is zero wherever the other is: 0/0 is not 0.
+    Its numerator is a multiple of the other's, and no denominator vanishes there: 0/0 is not 0.
     """
     roots, kinds = _Roots(value, other), ("power", "letter")
     above, below = (roots.numerator(one, kinds) for one in (value, other))
@@ -159,7 +159,7 @@ def vanishes_with(value: Value, other: Value) -> bool:
         return False
     apart = (d for d in divisors(value) if d.parts & other.parts and not has_sign(d))
     found = [roots.numerator(d, kinds) for d in apart]
-    if any(roots.have_roots(one) for one in (above, below, *found)):  # these depend on each other
+    if any(roots.have_roots(one) for one in (above, below, *found)):  # roots are not independent
         return not found
     return all(one.gcd(below).is_one() for one in found)
 

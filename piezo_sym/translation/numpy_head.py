@@ -1,8 +1,8 @@
 """What surrounds the functions of a printed NumPy module: imports, tables, parameters, helpers.
 
-Input: the text of ``<model>.py`` and a `Proved`.  Output: its functions as trees, if all else in it
-is as expected: helpers as they stand here, tables with the names of the model, parameters with its
-values.  So a name such as ``np`` or ``_lanes`` means in every function what it should.
+Input: the text of ``<model>.py`` and a `Proved`.  Output: its functions as trees, if the rest is as
+expected: the helpers in this file, tables with the model's names, parameters with its values.  So
+names such as ``np`` and ``_lanes`` have their usual meaning in every function.
 """
 
 import ast
@@ -74,7 +74,7 @@ class Parameters:
 
 
 def numpy_functions(text: str, known: Proved) -> Mapping[str, ast.FunctionDef]:
-    """Return the functions of a module that compute rows."""
+    """Return the functions of a module that compute rows; refuse anything else unexpected."""
     if re.search(r"coding[:=]", "\n".join(text.split("\n")[:2])):
         raise NotShownError("the NumPy module has another coding")
     try:
@@ -107,7 +107,7 @@ def _is_text(node: ast.stmt) -> bool:
 
 
 def _fixed(iphs: IPHS) -> list[str]:
-    """Return what stands in every module, and the parameters of this one, by statements."""
+    """Return the statements that every module has, and those of this model's parameters."""
     slots, lanes, model = iphs.system.states, iphs.circuit.lane_parameters, iphs.model
     size = [str(sum(s.bank is None for s in slots))]
     size += [f"p.{s.bank}_count" for s in slots if s.bank]
@@ -137,7 +137,7 @@ def _bare(node: ast.stmt) -> str:
 
 
 def _rows(node: ast.expr) -> object:
-    """Return a table: constants, tuples of them, and records without unit and text."""
+    """Return the content of a table: constants, tuples, and records as (name, bank)."""
     match node:
         case ast.Tuple(parts):
             return tuple(map(_rows, parts))

@@ -26,7 +26,7 @@ CALLS = {record.numpy: name for name, record in RECORDS.items() if record.smooth
 CALLS |= {"np.abs": "abs", "np.sign": "sign", "np.minimum": "minimum", "np.maximum": "maximum"}
 CALLS |= {"np.clip": "clip"}
 
-#: Of a function that chooses: it says nothing of what is not chosen.
+#: The decorator of a function with choices: it hides warnings from values that are not chosen.
 QUIET = "np.errstate(divide='ignore', invalid='ignore')"
 
 
@@ -43,7 +43,7 @@ def read_numpy(functions: Mapping[str, ast.FunctionDef], known: Proved) -> dict[
 
 @final
 class _Function:
-    """Reads one function; names stand for values, arguments (`roles`) or index arrays (`lanes`)."""
+    """Reads one function, whose names are values, arguments (`roles`) or index arrays (`lanes`)."""
 
     def __init__(self, node: ast.FunctionDef, words: Sequence[str], known: Proved) -> None:
         self.node, self.known, self.field = node, known, known.field
@@ -67,7 +67,7 @@ class _Function:
         self.values: dict[str, Read] = {}
         self.lanes: dict[str, tuple[Value, Value]] = {}
         self.written = Rows(known, self.name)
-        self.own: tuple[str, str] | None = None  # in a list, which lane a part is of, and its bank
+        self.own: tuple[str, str] | None = None  # (lane, bank) of an entry in a list
         self.field.derived = self.name == "jacobian"
         self.read = Expressions(self.field, known.numbers, self._leaf, CALLS, False)
 
@@ -144,7 +144,7 @@ class _Function:
             self.values[name] = self.field.letter(read) if shape != WHOLE else read, shape
 
     def _allocate(self, value: ast.Call) -> None:
-        """Read how the result is made: with zeros, rows may be left out."""
+        """Check how the result is allocated: rows may stay unwritten only in an array of zeros."""
         zeros, shape = ast.unparse(value.func) == "np.zeros", next(iter(value.args), value)
         square = f"({self.x}.shape[0], *{self.x}.shape)"
         match shape:
@@ -177,7 +177,7 @@ class _Function:
             rows.keep(key, self._of(value, shapes), added=added)
 
     def _key(self, place: ast.expr) -> tuple[Key, tuple[str, ...]]:
-        """Return which row or entry stands at a place, and the banks whose lanes it is of."""
+        """Return the key of the row or entry at an index, and the banks whose lanes it spans."""
         parts = place.elts if isinstance(place, ast.Tuple) else [place]
         matrix = self.name == "jacobian"
         equal = matrix and all(_first(part) in self.lanes for part in parts)
@@ -189,14 +189,14 @@ class _Function:
         return (self.name, *(n for n, _ in found), *kind), banks[:1] if equal else banks
 
     def _of(self, node: ast.expr, shapes: Sequence[Shape] = ()) -> Value:
-        """Return an expression that has one of some shapes, or the same value for all lanes."""
+        """Return the value of an expression; refuse an array whose shape is not one of `shapes`."""
         value, shape = self.read.numeric(node)
         if shape.bank and shape not in shapes:
             raise refused(node, "an array of another shape")
         return value
 
     def _least(self, node: ast.expr) -> Value | None:
-        """Return what the least over the lanes is taken of, if it is."""
+        """Return the value per lane in ``np.min(value, axis=0)``, or None for other expressions."""
         match node:
             case ast.Call(ast.Attribute(ast.Name("np"), "min"), [arg], [axis]):
                 value, shape = self.read.numeric(arg)
@@ -264,9 +264,9 @@ class _Function:
         match name, args, words:
             case "where", [test, then, other], []:
                 return self.read.choice(test, then, other)
-            case "float64", [arg], []:  # a float, or an array of floats, stays one
+            case "float64", [arg], []:  # leaves floats unchanged
                 return self.read.numeric(arg)
-            case "sum", [arg], ["axis=0"] if self.own is None:  # a lane in a sum is no lane's own
+            case "sum", [arg], ["axis=0"] if self.own is None:  # no sum in an entry of a list
                 value, shape = self.read.numeric(arg)
                 if shape.kind == "lanes":
                     return self.field.lane_sum(value, shape.bank), PLAIN
@@ -281,6 +281,6 @@ class _Function:
 
 
 def _first(node: ast.expr) -> str:
-    """Return the name that stands first in a sum of two."""
+    """Return the name of a name, or of the first summand of a sum; '' for other expressions."""
     name = node.left if isinstance(node, ast.BinOp) else node
     return name.id if isinstance(name, ast.Name) else ""

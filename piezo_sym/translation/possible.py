@@ -1,7 +1,7 @@
 """Whether differences can have some signs together: a query to a solver.
 
-Input: the signs.  Output: no, if a solver shows that they contradict each other and what the domain
-says.  Generators are real numbers to it, of the signs that they are known to have.
+Input: the signs.  Output: whether a solver shows that they contradict each other or the domain.  To
+the solver, generators are real numbers with the signs that are known.
 """
 
 from collections.abc import Iterator, Mapping
@@ -24,7 +24,7 @@ _OPS = {1: ">", 0: "=", -1: "<"}
 
 
 def impossible(sides: Mapping[Value, int]) -> bool:
-    """Return whether differences are shown not to have these signs, anywhere in the domain."""
+    """Return whether differences are shown to have these signs nowhere in the domain."""
     key = frozenset(sides.items())
     field = next(iter(sides)).field
     if key not in field.asked and len(field.asked) < MOST_ASKED and field.unknown < MOST_UNKNOWN:
@@ -51,7 +51,7 @@ def _impossible(sides: Mapping[Value, int]) -> bool:
 
 
 def _of_generator(field: GeneratorField, part: tuple[int, Exponent]) -> Iterator[Cmp]:
-    """Yield what is known of a generator's power: its sign, and what functions do with signs."""
+    """Yield facts on a power of a generator: its sign, a root's square, bounds of functions."""
     sign, gen, symbol = sign_of(field, part[0]), field.gens[part[0]], _symbol(part)
     if sign:
         yield Cmp(">" if sign == 2 else ">=", symbol, ZERO)
@@ -66,7 +66,7 @@ def _of_generator(field: GeneratorField, part: tuple[int, Exponent]) -> Iterator
 
 
 def _of_function(record: LawFunction, arg: Expr, value: Expr) -> Iterator[Cmp]:
-    """Yield between which numbers a function lies, and where it is above a value that it has."""
+    """Yield the bounds of a function; if it is monotone, on which side of a known value it is."""
     low, high = record.bounds
     if isinstance(low, Fraction) and isinstance(high, Fraction):
         yield from (Cmp("<=", value, Num(high)), Cmp(">=", value, Num(low)))
@@ -76,7 +76,7 @@ def _of_function(record: LawFunction, arg: Expr, value: Expr) -> Iterator[Cmp]:
 
 
 def _symbol(part: tuple[int, Exponent]) -> Expr:
-    """Return a whole power of a generator; another power is a number of its own."""
+    """Return a positive integer power of a generator; any other power is a symbol of its own."""
     g, e = part
     if Fraction(e).denominator == 1 and e > 0:
         return power(Sym(f"g{g}"), Fraction(e))

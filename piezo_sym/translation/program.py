@@ -2,9 +2,9 @@
 
 Input: an `IPHS`, and the text of its NumPy module, its C file and its step.  Output: a row.  PROVED
 if every function, read back, is the proved one for all real numbers of the domain, on every branch
-and for every size of every bank, and divides by nothing more than the laws do; of a step these are
-the stage and what its means are of, see `collocation`.  REFUTED with numbers at which a row
-differs; OPEN with what was not understood or not shown.
+and for every size of every bank, and divides by nothing that the laws do not divide by; in a step
+these are the stage and the integrands of its means, see `collocation`.  REFUTED with numbers at
+which a row differs; OPEN with what was not understood or not shown.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -29,16 +29,16 @@ from piezo_sym.translation.zero import Edges, edges_of, is_zero
 
 STATEMENT = "the printed NumPy, C and step files are the proved system (real arithmetic)"
 MOST_TEXT = 4_000_000
-#: The texts that are read back, by how their files end.
+#: The texts that are read back, by the endings of their files.
 READ = {".py": "NumPy", ".c": "C", "_step.c": "step"}
-#: So many rows that are not shown to be right are looked at for numbers at which they are wrong.
+#: The most rows, of those not shown to be right, for which a counterexample is looked for.
 MOST_TRIED = 4
 
 
 @final
 @dataclass(frozen=True)
 class Reference:
-    """What printed texts of a system are compared with, in normal form."""
+    """The normal forms with which the printed texts of a system are compared."""
 
     iphs: IPHS
 
@@ -49,14 +49,14 @@ class Reference:
 
     @cached_property
     def stage(self) -> Proved:
-        """The stage of its step."""
+        """A stage of the system's collocation step."""
         return proved_step(self.iphs)
 
 
 def program_row(iphs: IPHS, texts: Mapping[str, str], endings: Collection[str] = READ) -> Row:
-    """Return the row `program` of a system and its texts, from `printed`, with some endings.
+    """Return the row `program` of a system, from its `printed` texts with the given endings.
 
-    Rows on some of them are joined by `worst`.
+    Rows on different endings can be joined by `worst`.
     """
     try:
         known = Reference(iphs)
@@ -77,7 +77,7 @@ def _open(reason: str) -> Row:
 
 
 def different(language: str, text: str, reference: Reference) -> tuple[Row, ...]:
-    """Return a row on what differs in the NumPy or C text, or the step's, if anything does."""
+    """Return one row on the worst difference in a NumPy, C or step text; () if there is none."""
     known = reference.stage if language == "step" else reference.system
     try:
         if len(text) > MOST_TEXT:
@@ -101,7 +101,7 @@ def _read(language: str, text: str, known: Proved) -> Mapping[Key, Value]:
 
 
 def _differences(language: str, rows: Mapping[Key, Value], known: Proved) -> Iterator[Row]:
-    """Yield for each row that is not shown to be the proved one what is wrong with it."""
+    """Yield a verdict on each printed row that is not shown to equal the proved one."""
     tried = 0
     for key in dict.fromkeys((*known.values, *rows)):
         printed, wanted = (table.get(key, known.field.zero) for table in (rows, known.values))
@@ -122,7 +122,7 @@ def _differences(language: str, rows: Mapping[Key, Value], known: Proved) -> Ite
 
 
 def _doubt(key: Key, difference: Value, edges: Edges) -> str:
-    """Return why a difference is not shown to be zero, or nothing if it is."""
+    """Return why a difference is not shown to be zero, or '' if it is."""
     try:
         with reading(difference.field, str(key[0])):
             shown = is_zero(difference, edges=edges)
@@ -139,15 +139,15 @@ def _label(key: Key, n: int, known: Proved) -> str:
 
 
 def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
-    """Yield what printed code divides by, or takes roots of, and laws do not."""
+    """Yield a reason for each divisor, or argument of a root, that only printed code has."""
     field, allowed = known.field, dict[Value, list[Need]]()
     for given in known.needs:
         allowed.setdefault(given.value, []).append(given)
         for factor, _ in factors(given.value) if given.kind == "nonzero" else ():
-            allowed.setdefault(factor, []).append(given)  # of a product that is not zero
+            allowed.setdefault(factor, []).append(given)  # a nonzero product has nonzero factors
     for need in needs:
         value = _in_first_lane(need.value)
-        nonzero = [  # wherever printed code needs the value
+        nonzero = [  # values that are nonzero wherever printed code needs `value`
             g.value
             for g in known.needs
             if g.kind in {"nonzero", "positive"} and g.path == field.one and _covers(g, need)
@@ -159,7 +159,7 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
             for given in allowed.get(value, ()):
                 if given.kind in (need.kind, "positive") and _covers(given, need):
                     left = left * (field.one - given.path)
-            # a derivative's divisor is the square of what laws divide by
+            # a derivative divides by the square of a law's divisor
             met = is_zero(left) or any(is_zero(value - d * d) for d in nonzero)
         if not met and not _is_square_sum(value, nonzero):
             where = "jacobian" if need.derived else "code"
@@ -167,7 +167,7 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
 
 
 def _is_square_sum(value: Value, nonzero: Collection[Value]) -> bool:
-    """Return whether a value is positive: squares of names, one of which is not zero."""
+    """Return whether a value is positive as a sum of even powers, one of them of nonzero names."""
     field = value.field
     squares = all(
         c > 0 and all(field.gens[g].kind == "name" and e > 0 and e % 2 == 0 for g, e in mono)
@@ -179,12 +179,12 @@ def _is_square_sum(value: Value, nonzero: Collection[Value]) -> bool:
 
 
 def _covers(given: Need, need: Need) -> bool:
-    """Return whether a need of laws is one wherever printed code has it."""
+    """Return whether a need of the laws holds wherever printed code has the same need."""
     return (need.derived or not given.derived) and need.outside in ("", given.outside)
 
 
 def _in_first_lane(value: Value) -> Value:
-    """Return a value of a column's lane in a row's."""
+    """Return a value that depends on the column's lane of a bank alone, moved to the row's lane."""
     for bank, lane in value.lanes:
         if lane == 1 and (bank, 0) not in value.lanes:
             value = moved(value, bank, 0)

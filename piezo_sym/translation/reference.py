@@ -51,7 +51,7 @@ def _slots(iphs: IPHS) -> dict[str, tuple[Slot, ...]]:
 def of_system(
     read: SystemReader, instead: Mapping[sp.Expr, sp.Expr] = MappingProxyType({})
 ) -> dict[str, list[Value]]:
-    """Return the rows of rates, outputs, supply, heats, production, `instead` of some products."""
+    """Return the rows of rates, outputs, supply, heats, production; `instead` replaces products."""
     system = read.iphs.system
     found: dict[str, Iterable[sp.Expr]] = {
         "rhs": system.rhs,

@@ -1,6 +1,6 @@
-"""Signs of values: what is known of them, comparisons, and functions of values that signs choose.
+"""Signs of values: known signs, comparisons, and functions of values with branches.
 
-Input: values.  Output: values in which signs choose; a comparison is 1 where it holds, else 0.
+Input: values.  Output: values whose branches are products with signs; a comparison is 1 or 0.
 """
 
 from collections.abc import Callable, Iterator
@@ -32,7 +32,7 @@ def sign_of(field: GeneratorField, g: int) -> int:
             known = 2
         if gen.arg and (gen.kind in {"power", "sum", "letter"} or _bends(gen)):
             known = sign(gen.arg)
-        if not known:  # the domain may say more later
+        if not known:  # not kept, as later assumptions may say more
             return field.assumed.get(field.raised(g, 1), 0)
         field.signed[g] = known
     return field.signed[g]
@@ -72,7 +72,7 @@ def _sign_of_term(field: GeneratorField, mono: Mono, c: Exponent) -> int:
 
 @contextmanager
 def on_path(field: GeneratorField, path: Value | None) -> Iterator[None]:
-    """Set a field's path for a while."""
+    """Set the path of the branch that is being read, until the context ends."""
     before, field.path = field.path, path
     try:
         yield
@@ -82,9 +82,10 @@ def on_path(field: GeneratorField, path: Value | None) -> Iterator[None]:
 
 @contextmanager
 def reading(field: GeneratorField, function: str) -> Iterator[None]:
-    """Forget what the domain says of signs where a function is read that holds outside of it.
+    """Forget the signs known from the domain while margins or integrands are read.
 
-    Margins say where the domain is; integrands are taken at nodes where nothing asks for it.
+    Both must hold outside the domain, too: margins decide whether a state is inside, and integrands
+    are evaluated at nodes where the domain is not checked.
     """
     if function not in {"margins", "integrands"}:
         yield
@@ -103,7 +104,7 @@ def reading(field: GeneratorField, function: str) -> Iterator[None]:
 
 
 def sides_of(d: Value) -> set[int]:
-    """Return the signs that the domain leaves to a difference."""
+    """Return the signs that a difference may have in the domain."""
     return _POSSIBLE[sign(d)] & {-side for side in _POSSIBLE[sign(-d)]}
 
 
@@ -113,22 +114,22 @@ def has_sign(value: Value) -> bool:
 
 
 def assume(value: Value, known: int) -> None:
-    """Take it that a value is positive (2) or not negative (1)."""
+    """Assume that a value is positive (2) or not negative (1)."""
     field = value.field
     field.signs.clear()
     field.forms.clear()
     if value.constant is None:
         rest = primitive(value, partly=True)[2]
         field.assumed[rest] = max(known, field.assumed.get(rest, 0))
-        for g in rest.generators():  # of what is but a name, the name is marked itself
+        for g in rest.generators():  # if the value is a mere name, mark the name itself
             if rest == field.raised(g, 1) and field.gens[g].kind == "name":
                 field.signed[g] = max(known, field.signed.get(g, 0))
 
 
 def primitive(value: Value, *, partly: bool) -> tuple[Fraction, Mono, Value]:
-    """Return (number, common factors, rest) of a value, the leading coefficient of rest 1 or -1.
+    """Return (number, common factors, rest) of a value; the leading coefficient of rest is 1 or -1.
 
-    With `partly`, number and factors are positive, or not negative with a positive exponent.
+    With `partly`, only positive factors (or factors >= 0 with a positive exponent) are taken out.
     """
     field, least = value.field, dict[int, Exponent]()
     monos = [dict(mono) for mono in value.terms]
@@ -173,7 +174,7 @@ def _factored(value: Value) -> list[tuple[Value, int]]:
         made = Value(field, terms)
         found.append((made * field.number(1 / made.lead), times))
         whole = whole * made.lead**times
-    # the lead of a product need not be the product of leads: what is left over is a factor, too
+    # the leading coefficient of a product need not be the product of those of its factors
     return found if whole == 1 else [(field.number(whole), 1), *found]
 
 
@@ -201,7 +202,7 @@ def _compared(sides: tuple[int, ...], d: Value) -> Value:
 
 
 def _forms(d: Value) -> tuple[list[Value], int]:
-    """Return values whose signs, multiplied, are that of d times 1 or -1; which of both."""
+    """Return values, and 1 or -1, such that the product of their signs is the sign of d."""
     field = d.field
     if d not in field.forms:
         size, common, rest = primitive(d, partly=False)
@@ -219,7 +220,7 @@ def _forms(d: Value) -> tuple[list[Value], int]:
 
 
 def _bent(factor: Value) -> tuple[list[Value], int]:
-    """Return what `_forms` does of a factor: tanh has the sign of its argument, as others have."""
+    """Return the result of `_forms` for a factor; tanh and the like have their argument's sign."""
     (mono, c), *more = factor.terms.items()
     gen = factor.field.gens[mono[0][0]] if len(mono) == 1 and mono[0][1] == 1 else None
     if not more and gen and gen.arg and _bends(gen):
@@ -228,7 +229,7 @@ def _bent(factor: Value) -> tuple[list[Value], int]:
 
 
 def lifted(function: Callable[[Value], Value], value: Value) -> Value:
-    """Return a function of a value in which signs choose: of each choice."""
+    """Return a function of a value with branches, applied on each branch."""
     field = value.field
     first = next((g for g in sorted(value.generators()) if field.gens[g].kind == "sign"), None)
     form = field.gens[first].arg if first is not None else None

@@ -44,9 +44,9 @@ class SystemReader:
     ----------
     field : of the values.
     names : parameters, inputs and states, in lane 0 where they have one per lane.
-    banks : the bank of each of these that has.
-    costates : those that are names, by what the spec calls them.
-    known : the value of each symbol that is a name, or a definition that was read.
+    banks : the bank of each of these that has one value per lane.
+    costates : the co-states that are names, by their names in the spec.
+    known : the value of each symbol that is a name, or whose definition was read.
     """
 
     def __init__(self, iphs: IPHS) -> None:
@@ -61,7 +61,7 @@ class SystemReader:
         self.names = {name: self._name(name, symbol) for name, symbol in symbols.items()}
         own = (self.names[slot.label].parts for slot in system.states)
         self.field.states = frozenset().union(*own)
-        self._read = list[sp.Symbol]()  # definitions among what is known
+        self._read = list[sp.Symbol]()  # symbols in `known` with definitions
         self.known = {symbols[name]: value for name, value in self.names.items()}
         self.known |= {s: self.field.count(bank) for bank, s in iphs.symbols.counts.items()}
         groups = (*iphs.named, iphs.costates)
@@ -72,7 +72,7 @@ class SystemReader:
         return self.field.name(name, bank or self.banks.get(name), 0, sign)
 
     def free(self, costate: str, name: str, bank: str | None) -> Value:
-        """Return a co-state as a name: from now on it is no function of a state."""
+        """Make a co-state a name that does not depend on a state, and return it."""
         self._forget()
         symbol = self.iphs.symbols[costate]
         del self._definitions[symbol]
@@ -80,7 +80,7 @@ class SystemReader:
         return self.costates[costate]
 
     def assume(self, given: Iterable[Cmp]) -> tuple[tuple[Value, bool], ...]:
-        """Take some conditions as true; return their margins, and which are strict."""
+        """Assume some conditions; return their margins, and whether each is strict."""
         found = [(self._margin(condition, {}), "=" not in condition.op) for condition in given]
         for margin, strict in found:
             assume(margin, 2 if strict else 1)
@@ -88,13 +88,13 @@ class SystemReader:
         return tuple(found)
 
     def assume_temperatures(self) -> None:
-        """Take all temperatures as positive."""
+        """Assume that all temperatures are positive."""
         for _, port in self.iphs.circuit.of(Body):
             assume(self(self.iphs.symbols[port.temperature]), 2)
         self._forget()
 
     def margins(self, given: Iterable[Cmp]) -> list[Value]:
-        """Return the margins of some conditions, of which nothing is taken as true."""
+        """Return the margins of some conditions, without assuming any of them."""
         given = list(given)
         with self._outside("margins", *given) as letters:
             for condition in given:
@@ -102,7 +102,7 @@ class SystemReader:
             return [self._margin(condition, letters) for condition in given]
 
     def law(self, law: Expr) -> Value:
-        """Return a law, nothing taken as true."""
+        """Return the value of a law, without the assumptions of the domain."""
         with self._outside("integrands", law) as letters:
             self._divide(law, letters)
             return self(self.iphs.symbols.law(law, letters))
@@ -123,7 +123,7 @@ class SystemReader:
 
     @contextmanager
     def _outside(self, function: str, *trees: Expr | Cmp) -> Iterator[Mapping[str, sp.Symbol]]:
-        """Give letters for names of which nothing is known, and forget what is known of signs."""
+        """Yield a symbol without sign for each name in trees, while known signs are forgotten."""
         used = dict.fromkeys(name for tree in trees for name in names(tree))
         found = {name: self.costates.get(name, self.names.get(name)) for name in used}
         unsigned = {name: sp.Dummy(name, real=True) for name, value in found.items() if value}
@@ -140,7 +140,7 @@ class SystemReader:
         return (left - right) * turn
 
     def _forget(self) -> None:
-        """Forget definitions that were read when less, or more, was known of signs."""
+        """Forget definitions that were read under other assumptions on signs."""
         for symbol in self._read:
             del self.known[symbol]
         self._read.clear()
@@ -218,7 +218,7 @@ class SystemReader:
 
 
 def rounded(iphs: IPHS) -> Iterator[tuple[float, Fraction]]:
-    """Yield the numbers of a spec that no short decimal is, with the nearest machine number."""
+    """Yield (nearest double, exact value) of each number in a spec that is rounded in print."""
     model = iphs.model
     trees = [law.tree for law in laws(model)]
     trees += [energy.law for energy in iphs.energies]

@@ -22,12 +22,12 @@ from piezo_sym.translation.field import Generator, Value
 from piezo_sym.translation.known import Proved
 
 POINTS = 30
-#: Terms that are worked out at all points together.
+#: The most terms that are evaluated at all points together.
 MOST_TERMS = 3_000
-#: A smaller part of the proved value could come from the rounding of printed numbers.
+#: A difference below this fraction of the proved value may come from rounding in print.
 LEAST_SHARE = 1e-12
 FACTORS = tuple(map(Fraction, ("1/2", "3/4", "1", "5/4", "2")))
-#: A value has no number at a point, or balls are too wide; or a name has no number, as 1/0 has.
+#: A value is undefined at a point, or its ball is too wide; or a name has no number (1/0).
 UNDECIDED = ArithmeticError, ValueError, KeyError
 #: The comparison with zero that each sign stands for.
 OPERATORS: Mapping[Hashable, str] = {1: ">", 0: "=", -1: "<"}
@@ -68,7 +68,7 @@ def _inside(margin: Value, point: WitnessPoint, strict: bool) -> bool:
 
 
 def _points(known: Proved) -> Iterator[WitnessPoint]:
-    """Yield points: the spec's numbers and others near, states of every size."""
+    """Yield points: the spec's parameters and inputs, or values near them; states of any size."""
     model, chance = known.iphs.model, random.Random(0)
     given = {n: e.si for table in (model.parameters, model.inputs) for n, e in table.items()}
     for n in range(POINTS):
@@ -89,7 +89,7 @@ def _points(known: Proved) -> Iterator[WitnessPoint]:
 def _means(
     point: WitnessPoint, known: Proved, n: int, chance: random.Random
 ) -> dict[str, tuple[Fraction, ...]]:
-    """Return numbers for means: their co-states at a point, or near them."""
+    """Return numbers for means of co-states: the co-states at a point, or values near them."""
     found = {}
     for name, costate in known.means.items():
         bank = known.banks.get(name)
@@ -103,7 +103,7 @@ def _means(
 
 
 def _number(value: float | None, n: int, chance: random.Random) -> Fraction:
-    """Return a number of a state (no value), or one like a parameter's or an input's."""
+    """Return a random number for a state (no value), or one at or near a given value."""
     if value is None or (value == 0 and n % 2):
         return Fraction(f"{chance.choice((1, 1, -1)) * 10 ** chance.uniform(-4, 2):.3g}")
     exact = Fraction(repr(float(value)))

@@ -34,20 +34,20 @@ def is_zero(value: Value, *, edges: Edges = frozenset()) -> bool:
         if not letters:
             raise
     spelled = (_spelled(value, letter) for letter in sorted(letters, reverse=True))
-    new = next((new for new in spelled if new != value), None)  # none if all are in sums over lanes
+    new = next((new for new in spelled if new != value), None)  # None: all lie in sums over lanes
     new = _by_cosh(value) if new is None else new
     return new != value and is_zero(new, edges=edges)
 
 
 def _by_cosh(value: Value) -> Value:
-    """Return a value with the logarithms of 1 + exp(2*z) by those of cosh(z)."""
+    """Return a value with logarithms of 1 + exp(2*z) replaced by those of cosh(z)."""
     logs = ((g, value.field.gens[g]) for g in value.parts)
     found = ((g, by_cosh(gen.arg)) for g, gen in logs if gen.kind == "log" and gen.arg)
     return put(value, {g: new for g, new in found if new is not None})
 
 
 def edges_of(value: Value) -> Edges:
-    """Return the differences with states whose signs occur in a value; it may have kinks there."""
+    """Return the differences with states whose signs occur in a value: it may have kinks there."""
     field = value.field
     found = (field.gens[g].arg for g in value.parts if field.gens[g].kind == "sign")
     return frozenset(d for d in found if d is not None and d.parts & field.states)
@@ -61,7 +61,7 @@ def _spelled(value: Value, letter: int) -> Value:
 
 
 def _is_zero(value: Value, *, edges: Edges) -> bool:
-    parts = _apart(value)  # each may not be zero where a difference of sums is
+    parts = _apart(value)  # parts need not be zero, though their sum is
     if len(parts) > 1 and all(is_zero(part, edges=edges) for part in parts):
         return True
     groups = _groups(value)

@@ -27,9 +27,9 @@ ATTACKED = frozenset(
     {"passive", "temperature", "welldef", "continuous", "sigma", "exergy", "environment"}
     | {"invariant"}
 )
-#: Of the time that is left, a row may take this part before all others are decided.
+#: The fraction of the time left that a row may take while other rows are not decided.
 SHARE = 0.125
-#: Gives what some work yields, done in turn or `beside` other work.
+#: A context with the results of some work, which is done when they are asked for, or `beside`.
 Apart: TypeAlias = Callable[[Iterator[Any]], AbstractContextManager[Iterator[Any]]]
 NOTHING: Mapping[int, Any] = MappingProxyType({})
 PROGRAM = Row("program", "", STATEMENT, Verdict.OPEN)
@@ -42,15 +42,15 @@ def examine(
     late: Mapping[int, int] = NOTHING,
     known: Mapping[int, Row] = NOTHING,
 ) -> Iterator[Template | Report | Progress]:
-    """Yield the texts of a system's module, its rows, all open, and each verdict once it is final.
+    """Yield the texts of a system's module, its rows (all open), and each verdict once it is final.
 
-    What was stated follows the rows once all are decided.
+    A report with the statements of the rows comes when all rows are decided.
 
     Parameters
     ----------
     points : how many points the attack takes; fewer in tests of many small networks alone.
-    apart : where texts are printed and read back: in turn, or `beside` proofs and attacks.
-    late, known : how often rows have taken more than their share, and those decided; see `Request`.
+    apart : how texts are printed and read back: when needed, or `beside` proofs and attacks.
+    late, known : how often each row took more than its share; the rows decided; see `Request`.
     """
     with apart(_printed(iphs, apart)) as printed:
         try:
@@ -78,7 +78,7 @@ def examine(
 
 
 def examined(messages: Iterable[Template | Report | Progress]) -> Report:
-    """Return the report that messages make up."""
+    """Return the report that the messages of `examine` add up to."""
     record = Record("", 0.0)
     for message in messages:
         if not isinstance(message, Template):
@@ -105,7 +105,7 @@ class _Work:
     def decided(
         self, numbers: Iterable[int], part: float, known: Mapping[int, Row] = NOTHING
     ) -> Iterator[Progress | Report]:
-        """Decide rows that are not known, and attack what is proved and was not attacked."""
+        """Decide the rows that are not known, and attack the proved ones that were not attacked."""
         claims = list[int]()
         for number in numbers:
             if number in known:
@@ -119,7 +119,7 @@ class _Work:
             else:
                 self._done[number] = row
         yield self.begun(None, 1.0)
-        yield replace(self.prover.report(), rows=self.rows)  # open, until each is said
+        yield replace(self.prover.report(), rows=self.rows)  # with statements
         keys = self._attackable(claims)
         if not keys:
             return
@@ -129,13 +129,13 @@ class _Work:
             yield self.begun(number, part)
             row, attack = self.prover.rows[number], hunt.attack(key)
             self.prover.rows[number] = self._done[number] = _attacked(row, attack)
-            if attack and attack.worst:  # a row more, after all others
+            if attack and attack.worst:  # an extra row, after all others
                 self._done[self.program + 1 + number] = _rounding(attack)
 
     def _attackable(self, claims: Iterable[int]) -> dict[int, tuple[str, str]]:
         """Return the id and the element of the rows to attack; the other claims become OPEN.
 
-        Rows on the divisors of the junction laws share both: numbers do not tell them apart.
+        Rows on divisors of the junction laws share id and element, so an attack is on all of them.
         """
         rows, keys = self.prover.rows, dict[int, tuple[str, str]]()
         for number in claims:

@@ -54,10 +54,10 @@ def examined(subject: IPHS | Model) -> Report:
 
 @final
 class Examination(NamedTuple):
-    """What is being found of a model: who asks for it waits.
+    """The results of an examination that is under way; a call waits for its result.
 
-    What `examined` raises is raised by either; `template` raises a `ProofError` if the
-    process ended before it had the texts of the module.
+    Both calls raise what `examined` raises; `template` raises a `ProofError` if the process ended
+    before it had the texts of the module.
     """
 
     template: Callable[[], Template]  # the texts of the module, before anything is proved of them
@@ -66,7 +66,7 @@ class Examination(NamedTuple):
 
 @contextmanager
 def examining(model: Model) -> Iterator[Examination]:
-    """Give what is found of a model from now on; where this process fails before, nobody waits."""
+    """Yield the examination of a model, which begins now; it is abandoned if the context fails."""
     texts: Future[Template] = Future()
     verdicts: Future[Report] = Future()
 

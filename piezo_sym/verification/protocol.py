@@ -15,27 +15,27 @@ if TYPE_CHECKING:
 @final
 @dataclass(frozen=True)
 class Request:
-    """What the process is asked."""
+    """A request to the process: the system to examine, the time, and what is known already."""
 
     subject: IPHS | Model  # the system, or a model of it
     seconds: float  # after which the process is stopped
-    #: How often each row, by its number, has taken more than its share: once, and it comes last;
-    #: twice, and it is left out.
+    #: How often each row, by its number, took more than its share of the time: after once it comes
+    #: last, after twice it is left out.
     late: Mapping[int, int] = field(default_factory=dict)
-    #: Rows that it has decided before, those that are proved perhaps not attacked.
+    #: Rows that were decided before; of these, proved ones may not have been attacked yet.
     known: Mapping[int, Row] = field(default_factory=dict)
 
 
 @final
 @dataclass(frozen=True)
 class Progress:
-    """What is decided since the message before, and what is done next."""
+    """The rows decided since the last message, and the row that is examined next."""
 
     #: Verdicts by their number in the report; those beyond its rows are added to it.
     rows: Mapping[int, Row]
     next: int | None = None  # the number of the row that is looked at next, or None
     part: float = 1.0  # of the time that is left, which that row may take
-    #: Rows that are to be attacked: nothing is said of them yet.
+    #: Rows that are proved but not attacked yet: their verdicts are not final.
     proved: Mapping[int, Row] = field(default_factory=dict)
 
 

@@ -13,14 +13,14 @@ from typing import final
 from piezo_sym.report import Report, Row, Verdict
 from piezo_sym.verification.protocol import Progress, Stop
 
-#: What is done where no row is being looked at.
+#: What the process does while it examines no single row.
 ATTACK = "the search for numbers that contradict it"
 
 
 @final
 @dataclass(eq=False)
 class Record:
-    """What is known of the rows of a model."""
+    """The verdicts on the rows of a model so far."""
 
     model: str  # its name
     limit: float  # seconds that it may take in all
@@ -34,7 +34,7 @@ class Record:
     _stop: str = ""
 
     def take(self, message: Report | Progress) -> None:
-        """Take note of all rows, which are open, or of verdicts on some."""
+        """Record a message: a report with all rows, or the verdicts on some rows."""
         if isinstance(message, Report):
             self._stated = message if message.stated else self._stated or message
         else:
@@ -54,7 +54,7 @@ class Record:
         return not stop.last and 1 in self.late.values()
 
     def report(self) -> Report:
-        """Return the report, the rows that are not decided open."""
+        """Return the report; rows that are not decided are OPEN, with the reason."""
         if self._stated is None:
             row = Row("derivation", "", "the system, derived", Verdict.OPEN, reason=self._stop)
             return Report(self.model, (row,))

@@ -19,9 +19,9 @@ from time import monotonic
 from piezo_sym.verification.process import END, answer, packed
 from piezo_sym.verification.protocol import Progress
 
-#: Bytes of address space; no system that is decided in time needs as much.
+#: The limit of the address space [byte], more than any system needs that is decided in time.
 MEMORY = 8 << 30
-#: Seconds that are no limit to anything that ends.
+#: The shortest time limit [s].
 LEAST = 0.1
 
 
@@ -32,16 +32,16 @@ def main() -> None:
     _, most = resource.getrlimit(resource.RLIMIT_AS)
     limit = MEMORY if most == resource.RLIM_INFINITY else min(MEMORY, most)
     resource.setrlimit(resource.RLIMIT_AS, (limit, most))
-    gc.set_threshold(100_000, 50, 100)  # what is made of a large system is not garbage
+    gc.set_threshold(100_000, 50, 100)  # a large system makes many objects, but little garbage
     given, out = sys.stdin.buffer, sys.stdout.buffer
     sys.stdout = sys.stderr
-    import piezo_sym.verification.examine  # noqa: F401  # while the caller still reads its spec
+    import piezo_sym.verification.examine  # noqa: F401  # now: the caller still reads its spec
     from piezo_sym.proofs.solvers import solver
     from piezo_sym.report import Report
     from piezo_sym.version import sources_hash
 
-    with suppress(OSError):  # it is tried again when something is asked
-        solver("z3").worker.start()  # it imports its library meanwhile
+    with suppress(OSError):  # the first query tries again
+        solver("z3").worker.start()  # imports z3 meanwhile
 
     sources = sources_hash()
     for number, line in enumerate(given):
@@ -66,7 +66,7 @@ def main() -> None:
 def end_after(seconds: float) -> None:
     """End this process after some seconds, unless this is called again before; 0 for never.
 
-    The system ends it: Python could not interrupt one long operation, as a power of large numbers.
+    The operating system ends it: Python cannot interrupt one long operation, as a large power.
     """
     signal.setitimer(signal.ITIMER_REAL, max(seconds, LEAST) if seconds else 0.0)
 

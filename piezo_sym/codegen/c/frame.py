@@ -78,8 +78,8 @@ class FunctionFrame:
 
         Parameters
         ----------
-        first, last : lines of its own, before and after the rest.
-        roots : what these need.
+        first, last : the caller's lines, before and after the rest.
+        roots : the expressions that these lines need.
         local, known : as in `function`.
         """
         wanted = needed(quantities, [*roots, *(write.value for write in writes)])[0]
@@ -132,7 +132,7 @@ class FunctionFrame:
         return writes, [*ends(at)]
 
     def place(self, at: Places, n: int, lane: str = "") -> str:
-        """Return the place of slot n; for a bank, in `lane` or else the loop's."""
+        """Return the place of slot n; for a bank, in lane `lane`, or else in the loop's lane."""
         first, lane = at.position(n), lane or self.words["j"]
         if not at.slots[n].bank:
             return first

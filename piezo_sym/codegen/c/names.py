@@ -1,7 +1,7 @@
 """Names in C: those of the spec, unless they are keywords, macros of headers or called functions.
 
 Input: the names of a program.  Output: the C name of each: the name itself, or with an underscore.
-The header is used together with others, and in C++: their macros and keywords count.
+The header may be included beside others, and in C++: their macros and keywords are avoided, too.
 """
 
 import re

@@ -1,8 +1,8 @@
 """Large functions in parts: the time of compilers grows with the square of a function's length.
 
 Input: what a function computes and writes.  Output: the writes of each part.  A part computes all
-that it needs, also what others compute, so that parts share nothing: writes that read neighbouring
-fields of the state come together.
+that it needs, even what other parts compute, too, so that parts share nothing; writes that read
+neighbouring fields of the state are put into one part.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -13,9 +13,9 @@ from piezo_sym.codegen.c.order import Write
 from piezo_sym.codegen.program import Described, Quantity
 from piezo_sym.expressions.tree import Expr, LaneSum, names
 
-#: The statements from which on a function is printed in parts, and about those of a part.
+#: A function with this many statements is printed in parts; about the statements of a part.
 LARGE, OF_A_PART = 1000, 250
-#: How many times the statements of the whole function its parts may have together.
+#: The most statements of all parts together, over those of the whole function.
 MOST_AGAIN = 2
 
 

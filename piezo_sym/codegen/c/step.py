@@ -31,7 +31,7 @@ NOTE = """\
  * functions `integrands` and `stage`{costates}; the others and the tables serve Newton's method.
  */"""
 
-#: Around what is printed for run/engine alone.
+#: Encloses the text that is printed for run/engine alone.
 ENGINE = """\
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
 #define COSTATES

@@ -67,7 +67,7 @@ class Reduction:
 @final
 @dataclass(frozen=True, slots=True)
 class Product:
-    """``number * free * bound``: a rational, powers free of the letter, a tree with it (or 1)."""
+    """``number * free * bound``: a rational, powers without the letter, a tree with it (or 1)."""
 
     number: Fraction
     free: Powers

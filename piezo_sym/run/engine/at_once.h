@@ -1,5 +1,5 @@
 /*
- * What is computed for all stages of a run at once, or for as many nodes: numbers lie lane by lane.
+ * Functions for all stages of a run at once, or for as many nodes: the values of all lanes lie together.
  */
 #include <stddef.h>
 #if defined(__GNUC__) && !defined(_WIN32)

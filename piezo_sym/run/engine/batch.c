@@ -1,6 +1,6 @@
 /* Batches of runs: a lane that has finished one run takes the next.  Comes after dispatch.c. */
 
-/* What Python asks of a batch; fields as in MODEL(batch). */
+/* The request of Python to a batch; fields as in MODEL(batch). */
 typedef struct {
     MODEL(run) *runs;
     const double *times;

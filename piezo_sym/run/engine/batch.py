@@ -34,7 +34,7 @@ class Stepping:
     """The options of steps."""
 
     stages: int  # of a step, 1 to 6; its order is twice that
-    #: Of the estimate of a step's error, in scales of the states; not used with `fixed`.
+    #: The largest estimated error of a step, over the scales of the states; not used with `fixed`.
     tolerance: float
     #: first, longest: the length of the first step, and of the longest [s].
     first: float

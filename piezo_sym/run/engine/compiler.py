@@ -24,7 +24,7 @@ from piezo_sym.errors import EngineError, one_line
 #: No contraction: products and sums are rounded separately, as in NumPy, so that a residual and the
 #: ledger are the same number, and a state at rest stays there.  It costs 5 % more time.
 COMMON = ("-std=c99", "-fPIC", "-ffp-contract=off")
-#: Of the call that makes the library.
+#: The flag of the call that links the library.
 SHARED = "-shared"
 #: Functions of one library call each other directly, as nothing replaces them.
 DIRECT = "-fno-semantic-interposition"
@@ -36,8 +36,8 @@ WRITTEN_OUT = (
     *("--param", "max-completely-peel-times=32"),
     "-fno-ipa-ra",
 )
-#: In place of -O3 for steps of one run, for which an edit of a law waits: what -O3 does beyond this
-#: takes two fifths of gcc's time, for two percent of a run's.
+#: In place of -O3 for steps of one run, as a user waits for them after each edit of a law: the rest
+#: of -O3 would take two fifths of gcc's time, for two percent of a run's.
 QUICK = (
     *("-O1", "-fpeel-loops", "-finline-functions", "-fgcse", "-fstrict-aliasing", "-ftree-vrp"),
     *("-fexpensive-optimizations", "-freorder-blocks-and-partition", "-fcaller-saves"),

@@ -3,7 +3,7 @@
  * where it is. Comes after trajectory.c.
  */
 
-/* A sign change of a switching function: fractions of the step that enclose it, the values there. */
+/* A sign change of a switching function: it lies between two fractions of the step, with these values. */
 typedef struct {
     long which;
     double low, high, at_low, at_high;
@@ -11,7 +11,7 @@ typedef struct {
     int several; /* whether another function changes its sign elsewhere in the step */
 } MODEL(crossing);
 
-/* Points at which a switching function is evaluated: begin, stages, end, and some between. */
+/* Points of a step at which a switching function is evaluated: its begin, stages, end, and some between. */
 enum { LOOKS = 1 + PARTS * (STAGES + 1) };
 
 /* Evaluate switching function k, positive while its branch holds; returns lanes that may switch. */
@@ -43,7 +43,7 @@ static mask MODEL(looks)(const MODEL(batch) *b, long k, real *value)
     return near;
 }
 
-/* The first sign change of switching function k in a lane, by its values on its branch. */
+/* The first sign change of switching function k in a lane; `values` are positive while its branch holds. */
 static MODEL(crossing) MODEL(sign_change)(long k, const real *values, int lane)
 {
     double at = 0.0, value = MODEL(greater)(LANE(values, 0, lane), 0.0);
@@ -60,14 +60,14 @@ static MODEL(crossing) MODEL(sign_change)(long k, const real *values, int lane)
     return (MODEL(crossing)){-1, 0.0, 1.0, 0.0, 0.0, 0, 0};
 }
 
-/* Where a sign change is, by the values around it. */
+/* The fraction of the step at which a sign change is, by linear interpolation. */
 static double MODEL(place_of)(const MODEL(crossing) *c)
 {
     return c->low + (c->high - c->low) * (c->at_low / (c->at_low - c->at_high));
 }
 
 /*
- * The lanes in which a switching function changes its sign within the step, and the first change of each. Those
+ * The lanes in which a switching function changes its sign within the step, and the first change of each. Changes
  * of functions as small as round-off are left out, and their lanes are in `slight`, unless that is NULL.
  */
 static mask MODEL(signs_change)(const MODEL(batch) *b, mask where, MODEL(crossing) *first, mask *slight)
@@ -104,7 +104,7 @@ static mask MODEL(signs_change)(const MODEL(batch) *b, mask where, MODEL(crossin
     return found;
 }
 
-/* The lanes whose steps would be the same, but for NO_DIFFERENCE, with branches by the signs at stages. */
+/* The lanes in which the branches by the signs at the stages would change the step by less than NO_DIFFERENCE. */
 static mask MODEL(same_on_both)(MODEL(batch) *b, mask where, real begin, real h)
 {
     const MODEL(block) *m = &b->m;
@@ -145,8 +145,8 @@ static mask MODEL(crossed)(MODEL(batch) *b, mask where, mask good, real begin, r
 }
 
 /*
- * How many lengths of a step after its end a switch is looked for, and by which factor it may come sooner than a
- * straight line through the last two values tells.
+ * A switch is looked for up to AHEAD lengths of a step after its end; it may come sooner, by the factor ROUGHLY,
+ * than the straight line through the last two values predicts.
  */
 enum { AHEAD = 3, ROUGHLY = 2 };
 
@@ -206,7 +206,7 @@ static double MODEL(to_kink)(const MODEL(batch) *b, const MODEL(crossing) *c, do
 }
 #endif
 
-/* By which part of its length a lane's step is to end behind a switch, as well as is known. */
+/* The fraction of its length by which a lane's step is to end behind a switch; `most` if none is known. */
 static double MODEL(over_switch)(const MODEL(batch) *b, int lane, long which, double length, double most)
 {
     const double slack = LANE(b->slack, which, lane);
@@ -232,8 +232,8 @@ static real MODEL(kink_error)(MODEL(batch) *b, real begin, real h, real behind, 
 }
 
 /*
- * The lanes whose steps may end where they do, behind the switches that are located in them; `slack` learns how
- * far behind each a step may end. Rates at the end tell of one place: what several change may cancel there.
+ * The lanes whose steps may end where they do, behind the switches located in them; `slack` keeps how far behind
+ * each switch a step may end. If several switches lie in a step, their errors may cancel at its end: none is kept.
  */
 static mask MODEL(ends_behind)(MODEL(batch) *b, mask where, real begin, real h,
                                const MODEL(crossing) *crossing, const double *part)
@@ -262,10 +262,10 @@ static mask MODEL(ends_behind)(MODEL(batch) *b, mask where, real begin, real h,
     return fits;
 }
 
-/* A sign change is located when its place moves by less than this part of what a step goes beyond it. */
+/* A sign change is located once its place moves by less than this fraction of how far the step ends behind it. */
 #define LOCATED 0.02
 
-/* Locate the sign changes of some lanes on the known polynomials, as fractions of the steps. */
+/* Locate the sign changes of some lanes on the polynomials of their steps' rates, as fractions of the steps. */
 static void MODEL(locate)(MODEL(batch) *b, mask where, real h, MODEL(crossing) *crossing, double *part)
 {
     MODEL(block) *m = &b->m;

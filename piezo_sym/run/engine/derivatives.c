@@ -1,6 +1,6 @@
 /*
- * The equations of a step, G_i = f(X(c_i), means, u_i) - K_i = 0, along a direction of all that they
- * depend on: the numbers of arguments and results have slopes.  Comes after dual.h, a generated
+ * The equations of a step, G_i = f(X(c_i), means, u_i) - K_i = 0, and their derivatives along a direction
+ * in all that they depend on: arguments and results are dual numbers.  Comes after dual.h, a generated
  * <model>_step.c and the tables of a number of stages.  Branches are kept.
  */
 
@@ -8,7 +8,7 @@
 #error "no derivatives yet of steps with kinks of energies or with path functionals"
 #endif
 
-/* What a step is made of; arrays of numbers with slopes. */
+/* Arguments and results of the equations of a step; arrays of dual numbers. */
 typedef struct {
     const MODEL(parameters) *p, *slopes; /* the slopes of parameters are a record like theirs */
     const real *h;

@@ -49,7 +49,7 @@ static void MODEL(sampled)(MODEL(batch) *b, MODEL(dispatch) *t)
 }
 
 #if defined(PATHS)
-/* The rates where steps with a tolerance began, as their stages tell. */
+/* The rates where steps with a tolerance began; those of path functionals follow from the stages. */
 static void MODEL(as_begun)(MODEL(batch) *b, const MODEL(dispatch) *t)
 {
     MODEL(inputs_at)(b, t->steps, t->begin, b->some_inputs);
@@ -65,7 +65,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
     MODEL(copy)(t->steps, m->reached, m->end, m->n);
     MODEL(copy)(t->steps, b->some_rows, b->part, m->booked);
     MODEL(copy)(t->steps & t->found, m->rates, b->known, STAGES * m->n);
-#if defined(PATHS) /* where it began, as its stages tell */
+#if defined(PATHS) /* rates at the begin: those of path functionals follow from the stages */
     if (b->fixed == 0.0)
         MODEL(as_begun)(b, t);
 #endif
@@ -84,7 +84,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
     MODEL(copy)(t->steps, b->some_side, b->end_side, m->branches);
 }
 
-/* Refuse steps without rates, or with large errors; of the others tell where switches have changed. */
+/* Refuse steps without rates, or with large errors; find the switches in the others. */
 static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     const real worst = any(t->planned) ? MODEL(error)(b, t->h) : (real)zero;
@@ -140,7 +140,7 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
     }
 }
 
-/* Tell lanes when the next switch comes after their steps, and which. */
+/* Predict for each lane which switch comes next after its step, and when. */
 static void MODEL(look_ahead)(MODEL(batch) *b, const MODEL(dispatch) *t)
 {
     const mask where = t->steps & t->found & none_of(b->m.over);

@@ -39,15 +39,15 @@
 #define PULL(z) (1e-2 * (z) * (z))
 #endif
 /*
- * What is left of a series that does not decay as SMOOTH takes it to, as near a steep part of a law.
- * GEOMETRIC: as much less, over s more terms, as the square of the next term's ratio to the last two.
- * LOCAL: of a misfit whose term of order s + 1 is as large as that of order s, since the rate turns
- * between two stages.  If the last term is ONE_OF times the misfit, or more, its series goes on.
+ * The part of the error left at the end if the series decays more slowly than SMOOTH assumes, as near a steep
+ * part of a law. GEOMETRIC: the factor of the squared ratio of the misfit to the last two terms. LOCAL: the part
+ * for a misfit whose term of order s + 1 is as large as that of order s, since the rate turns between two
+ * stages; it is reduced if the last term is more than ONE_OF times the misfit.
  */
 #define GEOMETRIC 0.5
 #define LOCAL 0.05
 #define ONE_OF 3.0
-/* From the ratio of these two terms: 0 up to 0.6, 1 from 1 on. */
+/* The weight of LOCAL, by the ratio of these two terms: 0 up to 0.6, 1 from 1 on. */
 #define TURNS(ratio) largest_of(least(2.5 * (ratio) - 1.5, wide(1.0)), zero)
 /* A state is stiff if the equations reduce its misfit by more than this factor, twice in a row. */
 #define REDUCED 2.5
@@ -66,7 +66,7 @@ static inline real further(real a, real b)
     return chosen(first, a, b);
 }
 
-/* What is left of misfits at both ends if their series decays slowly; by its last term, and that before. */
+/* The part of the misfits at both ends that is left if their series decays slowly, by its last two terms. */
 static inline real MODEL(slow_part)(real low, real high, real last, real before)
 {
     const real tiny = 1e-300 + zero, misfit = largest_of(size_of(low), size_of(high));
@@ -78,8 +78,8 @@ static inline real MODEL(slow_part)(real low, real high, real last, real before)
 }
 
 /*
- * The misfits of some states' rates in a step times `gamma`, in some_rate; and the parts of them that are
- * left at the end, by their series, in some_left. Where `series` is 0, it says nothing.
+ * The misfits of some states' rates, times `gamma`, in some_rate; and the fractions of them that are left at the
+ * end of the step, in some_left. Where `series` is 0, the series of the rates is not used.
  */
 static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long first, long end)
 {

@@ -22,7 +22,7 @@ typedef struct {
     real amplitude, frequency, rate, phase, offset, others;
 } MODEL(wave);
 
-/* Set the waves of all inputs in a lane, which has come to a segment. */
+/* Set the waves of all inputs in a lane that has reached a segment. */
 static void MODEL(enter)(MODEL(wave) *waves, const MODEL(segment) *segment, long inputs, int lane)
 {
     for (long k = 0; k < inputs; ++k) {

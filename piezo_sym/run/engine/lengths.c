@@ -1,6 +1,6 @@
 /*
- * The lengths of steps with a tolerance: by their errors, up to switches that are seen before, after switches,
- * and below lengths that could not be solved. Comes after samples.c.
+ * The lengths of steps with a tolerance: by their errors, up to switches that are foreseen, after switches, and
+ * below lengths at which Newton's method failed. Comes after samples.c.
  */
 
 /* The step length is proportional to about this power of the error where steps contain kinks. */
@@ -10,24 +10,24 @@
 #define PART_OVER 0.9
 /* An error may be small by chance: a step is at most this much longer than the last one allowed. */
 #define SUDDEN 1.5
-/* Steps are this much shorter than one that could not be solved, and less so with each of them. */
+/* Steps stay below this part of a length that could not be solved; that length grows by LESS_HARD each step. */
 #define BELOW_HARD 0.6
 #define LESS_HARD 2.0
 /*
- * How many steps in a row may be aimed at a switch, since at rest switches follow each other without end; and
- * how far such a step is to go over it, as a part of it, where nothing is known of the switch.
+ * The most steps in a row that are aimed at a switch, since at rest switches follow each other without end; and
+ * the fraction of its length by which such a step is to end behind a switch of which nothing is known.
  */
 enum { MOST_AIMS = 2 };
 #define OVER_SWITCH (0.5 * BEHIND)
 /* The first step after a switch of which nothing is known yet is this part of the one before. */
 #define AFTER_SWITCH 0.3
-/* The length after a switch grows by no more than this factor from one time to the next. */
+/* The length kept for steps after a switch grows by at most this factor from one passage to the next. */
 #define MORE_AFTER 1.5
 
 /* Intervals between switches are alike if they differ by less than this part, as in periodic motions. */
 #define ALIKE 0.02
 
-/* How much longer the next steps may be, by the errors of these. */
+/* The factor by which the next steps may be longer than these, by the errors of these. */
 static real MODEL(growth)(const MODEL(batch) *b, real error)
 {
     const mask over = b->m.over, positive = error > 0.0, none = error == 0.0;
@@ -36,7 +36,7 @@ static real MODEL(growth)(const MODEL(batch) *b, real error)
     return chosen(positive, more, chosen(none, wide(8.0), wide(0.25)));
 }
 
-/* Note how long a step may be that begins at the switch at which this one began. */
+/* Keep how long a step may be after the switch at which this step began. */
 static void MODEL(keep_after)(MODEL(batch) *b, const MODEL(lane) *l, int lane, double most)
 {
     double *const after = &LANE(b->after, l->turned, lane);
@@ -45,9 +45,9 @@ static void MODEL(keep_after)(MODEL(batch) *b, const MODEL(lane) *l, int lane, d
 }
 
 /*
- * Learn how long after the switch before it the switch at which a step ended comes, and which it is. A function
- * has two rows of `interval`, by its sign at the step's begin. An interval that differs from the one before it
- * is kept as negative: no switch is expected by it, but the next interval is compared with it.
+ * Keep the interval between the last switch and the one at which a step ended, and which switch that is. A
+ * function has two rows of `interval`, one per sign at the step's begin. An interval unlike the previous one is
+ * kept as negative: no switch is expected from it, but the next interval is compared with it.
  */
 static void MODEL(learn_interval)(MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
@@ -62,7 +62,7 @@ static void MODEL(learn_interval)(MODEL(batch) *b, MODEL(lane) *l, int lane)
     MODEL(recall_passage)(b, l, lane);
 }
 
-/* Where no switch is seen ahead, one is expected when it came the last times. */
+/* If no switch is foreseen, expect the one that followed the last switch before, after the same interval. */
 static void MODEL(expect_switch)(const MODEL(batch) *b, MODEL(lane) *l, int lane)
 {
     if (l->goal >= 0 || l->passing < 0 || IN(b->m.over, lane))
@@ -75,8 +75,8 @@ static void MODEL(expect_switch)(const MODEL(batch) *b, MODEL(lane) *l, int lane
 }
 
 /*
- * The length of the step after one that was accepted; by its error it is at most `most` times longer. One
- * that was aimed at a switch, and did not meet it, says nothing of lengths: the length before counts.
+ * The length of the step after an accepted one, at most `most` times longer by its error. A step that was aimed
+ * at a switch and did not meet it was too short to judge by: the length it would have had counts.
  */
 static void MODEL(next_length)(MODEL(batch) *b, MODEL(lane) *l, int lane, double most)
 {

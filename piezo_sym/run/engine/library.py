@@ -52,7 +52,7 @@ DIGEST, BUILD, LEFT_SECONDS = ".sha256", ".build-", 3600.0
 #: The parts of C that depend on a spec's values: comments, and the initializer.
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _VALUES = re.compile(r"^#define \w+_DEFAULTS \{ \\\n(?:.*\\\n)*\}$", re.MULTILINE)
-#: What C is told of a model that is not proved: see real.h.
+#: The macro that is defined for a model that is not proved: see real.h.
 NOT_PROVED = "#define NOT_PROVED\n"
 #: The environment variable for the folder of caches.
 CACHE = "HOME" if sys.platform == "darwin" else "XDG_CACHE_HOME"

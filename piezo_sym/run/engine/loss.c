@@ -2,16 +2,16 @@
  * The loss of a dissipative step (comes after gauss.c): one stage, whose rates are those at the step's end.
  *
  * Stores then lose N = h y^T u - (U_1 - U_0) >= 0 beside all processes, if energies are convex. The
- * first body takes it as heat, since nobody else says which one: its entropy grows by N/T_1 more.  So
+ * first body takes it as heat, as no law says which body does: its entropy grows by N/T_1 more.  So
  * the balance of energy stays exact, and N/T_1 is one more term of the entropy that is produced.
  */
 
-/* What rounding leaves of N, in parts of the energy. */
+/* The round-off of N, as a fraction of the energy. */
 #define OF_ENERGY 2e-15
 
 /*
- * Add the loss to rates and rows.  Newton's method for the body's own row: its rate is what it is now
- * and what the energy still lacks, as heat; all of it that processes do not bring is the loss.
+ * Add the loss to rates and rows.  Newton's method for the body's own row: its rate grows by the energy
+ * that the balance still lacks, as heat; the part of the rate that processes do not bring is the loss.
  */
 static void MODEL(lose)(const MODEL(block) *m, real h, real *rate, real *rows)
 {

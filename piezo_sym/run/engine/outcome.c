@@ -20,9 +20,9 @@ static void MODEL(end_run)(MODEL(batch) *b, int lane, int failed)
 }
 
 /*
- * A run does not go on: it ends, unless steps over kinks are left to try.  Where states begin at rest, and
- * kinks meet, switching functions may be no more than the noise of an input.  Not where laws jump: such
- * a law may hold the state.
+ * No step of a run succeeds: the run ends, unless steps over kinks have not been tried.  Where states begin at
+ * rest and kinks meet, switching functions may be mere noise of an input.  Steps over kinks are not tried
+ * where laws jump: such a law may hold the state.
  */
 static void MODEL(stuck)(MODEL(batch) *b, int lane)
 {
@@ -144,8 +144,8 @@ static int MODEL(go_on)(MODEL(batch) *b, int lane)
 }
 
 /*
- * Let a lane repeat its step up to a switch, at a part of it, and a little more, if that is at most `most`;
- * returns 0 if it is not repeated, or was too many times.
+ * Let a lane repeat its step so that it ends a little behind a switch at `part` of it, but not beyond `most`;
+ * returns 0 if it is not repeated, or was repeated too often.
  */
 static int MODEL(cut)(MODEL(batch) *b, int lane, double part, double most)
 {
@@ -158,12 +158,12 @@ static int MODEL(cut)(MODEL(batch) *b, int lane, double part, double most)
     return 1;
 }
 
-/* A step that was aimed at a switch is repeated up to there if it ends before it, by at most this factor. */
+/* A step that was aimed at a switch but ends before it is repeated up to it, at most this much longer. */
 #define SHORT 1.1
 /* The same for a step that was cut. */
 #define SHORT_CUT 1.5
 
-/* Whether a lane's step, which was to end at a switch and does not cross it, is not repeated up to there. */
+/* Whether to keep a lane's step that was to end at a switch and does not cross it; else it is repeated longer. */
 static int MODEL(reaches)(MODEL(batch) *b, int lane)
 {
     MODEL(lane) *l = b->lane + lane;

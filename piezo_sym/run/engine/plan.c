@@ -6,15 +6,15 @@ typedef struct {
     real ahead, ratio;                 /* where steps begin in those that they recall; how long they are */
     real iterations;                   /* of lanes, before this step */
     mask recalling;                    /* steps that recall recorded ones; see predict.c */
-    mask busy, sampling, steps, known; /* lanes with a step; for a sample; another; with a prediction */
-    mask planned;                      /* steps whose length their errors decide */
-    mask turned;                       /* whose known rates are those before a switch */
-    mask loose;                        /* where Newton's method may stop short of round-off */
-    mask resumed;                      /* whose step begins at the last sample */
-    mask found, good;                  /* lanes whose step has rates; and lies in the domain */
-    mask search, switched;             /* where a switch has to be located; and a step may be cut */
-    mask fits;                         /* whose step may end where it does, behind its switch */
-    mask booked, turns, ends;          /* whose step counts; whose branches turn; who steps to kinks */
+    mask busy, sampling, steps, known; /* with any step; a sample's; the run's own; with a prediction */
+    mask planned;                      /* steps whose length follows from their errors */
+    mask turned;                       /* the known rates are those before a switch */
+    mask loose;                        /* Newton's method may stop short of round-off */
+    mask resumed;                      /* the step begins at the last sample */
+    mask found, good;                  /* the step has rates; it also lies in the domain */
+    mask search, switched;             /* a switch has to be located; the step may be cut there */
+    mask fits;                         /* the step may end where it does, behind its switch */
+    mask booked, turns, ends;          /* the step counts; branches change; steps now end at kinks */
     MODEL(crossing) crossing[REAL_WIDTH];
     double part[REAL_WIDTH];
 } MODEL(dispatch);
@@ -39,7 +39,7 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
         const int known = l->known > 0.0 && !(turned && l->length > LIKE_BEFORE * l->known);
         SET(t.known, lane, known);
         SET(t.turned, lane, known && turned);
-        SET(t.loose, lane, b->fixed == 0.0 && !b->tape && !l->to_round_off); /* a tape has exact roots */
+        SET(t.loose, lane, b->fixed == 0.0 && !b->tape && !l->to_round_off); /* a tape needs round-off */
         l->solves += !IN(t.sampling, lane);
         LANE(&t.h, 0, lane) = l->length;
         LANE(&t.begin, 0, lane) = MODEL(begin)(l);

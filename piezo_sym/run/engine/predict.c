@@ -118,7 +118,7 @@ static int MODEL(recalls)(const MODEL(batch) *b, int lane, double *ahead, double
     return *ahead >= -EXTENDED && *ahead + *ratio <= 1.0 + EXTENDED;
 }
 
-/* The rates of one state in the steps that lanes recall, and their change since the time before. */
+/* The stage rates of one state in the steps that lanes recall, and how they changed from one passage to the next. */
 static void MODEL(recalled_rates)(const MODEL(batch) *b, mask recalling, long k, real *rates, real *change)
 {
     const MODEL(history) *const past = &b->past;

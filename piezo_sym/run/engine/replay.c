@@ -1,7 +1,7 @@
 /*
- * Steps that can be taken again: from where one begins, its length and the branches of its stages, the
- * same numbers to the bit, whatever was solved before.  A run on tape is made of such steps, and the
- * tape keeps what they begin with.  For one run.  Comes after crossings.c.
+ * Steps that can be repeated to the bit: their results depend only on the state and time at which they
+ * begin, their length and the branches of their stages, not on what was solved before.  A tape keeps
+ * these data for each step of one run.  Comes after crossings.c.
  */
 #if REAL_WIDTH == 1
 
@@ -25,7 +25,7 @@ static int MODEL(solve_again)(MODEL(batch) *b, double t, double h)
     return found;
 }
 
-/* Take the step that a lane is to book as it will be taken again, and keep it; 0 if it has no rates. */
+/* Solve the step that a lane is to book as replay() will, and put it on the tape; 0 if it has no rates. */
 static int MODEL(keep_on_tape)(MODEL(batch) *b)
 {
     MODEL(block) *m = &b->m;
@@ -43,14 +43,14 @@ static int MODEL(keep_on_tape)(MODEL(batch) *b)
     return 1;
 }
 
-/* From now on steps go on a tape. */
+/* Record the steps of the run on a tape from now on. */
 void MODEL(keep)(MODEL(batch) *b, MODEL(tape) *tape);
 void MODEL(keep)(MODEL(batch) *b, MODEL(tape) *tape)
 {
     b->tape = tape;
 }
 
-/* Take a step of a tape again, of a batch whose run has begun; returns whether it has rates. */
+/* Repeat a step of a tape in a batch whose run has begun; returns whether it has rates. */
 int MODEL(replay)(MODEL(batch) *b, double t, double h, const double *x, const double *branch,
                   double *rates, double *u, double *end);
 int MODEL(replay)(MODEL(batch) *b, double t, double h, const double *x, const double *branch,

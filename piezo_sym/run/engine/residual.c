@@ -17,10 +17,10 @@
  */
 #if defined(COSTATES)
 #define MOST_SCALED 1e-4
-/* What the mean temperature may be off, times the entropy taken, as a fraction of that entropy's round-off. */
+/* The largest error of the mean temperature, times the entropy taken, as a fraction of the entropy's round-off. */
 #define MOST_BENT 0.03
 
-/* The temperature of the first body with more entropy than at a point; `x` and `costate` are written. */
+/* The temperature of the first body after adding the entropy `more` to the state x; writes `x` and `costate`. */
 static real MODEL(heated_temperature)(const MODEL(block) *m, real *x, real more)
 {
     const long body = m->first[MODEL(heated)];
@@ -31,8 +31,8 @@ static real MODEL(heated_temperature)(const MODEL(block) *m, real *x, real more)
 }
 
 /*
- * What the residuals of a step add up to: the energy that they lack, what they add to the entropies of
- * bodies, and the entropy that processes produce.
+ * Sums over a step: the energy that its residuals miss, the entropy that they add to bodies, and the entropy
+ * that processes produce.
  */
 static void MODEL(add_up_residuals)(const MODEL(block) *m, real h, real *energy, real *entropy,
                                     real *produced)
@@ -56,8 +56,8 @@ static void MODEL(add_up_residuals)(const MODEL(block) *m, real h, real *energy,
 }
 
 /*
- * Make heat of the residuals of some lanes; returns the lanes that need no more iterations: where that
- * is possible, or the step consumes entropy, so that it will be refused or cut at a switch.
+ * Turn the residuals of some lanes into heat; returns the lanes that need no more iterations: those where it is
+ * possible, and those whose step consumes entropy, so that it will be refused or cut at a switch.
  */
 static mask MODEL(take_residual)(MODEL(block) *m, real h, mask where)
 {

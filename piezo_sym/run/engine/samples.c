@@ -86,7 +86,7 @@ static void MODEL(keep_sample)(MODEL(batch) *b, int lane, const real *sums, cons
 }
 
 /*
- * Whether a failed step for a sample does no harm: the sample is already written, or none is due.
+ * Whether a failed step for a sample may be ignored: the sample is already written, or none is due.
  */
 static int MODEL(sample_stands)(const MODEL(batch) *b, int lane)
 {

@@ -19,7 +19,7 @@ from piezo_sym.run.samples import Samples
 from piezo_sym.run.signals import Chirp, Constant, Ramp, Signal, Sine, Square, Step, Triangle
 
 _CALLED = ctypes.CFUNCTYPE(DOUBLE, DOUBLE)
-#: Terms of a piece, and the greatest value of the last two, over the signal's size.
+#: Chebyshev terms of a piece; the bound on its last two, over the signal's size, to be exact.
 TERMS, EXACT = 12, 1e-13
 #: The first number of pieces of a run, so that their nodes are as dense as the samples of `jumps`;
 #: the most times that pieces are halved, and the most pieces.

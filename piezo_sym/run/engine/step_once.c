@@ -1,6 +1,6 @@
 /* Some steps at a call, for closed loops: plants, each a batch of one run.  Comes after batch.c. */
 
-/* All that a call needs for one plant, in one place; the caller decides the inputs. */
+/* The data of one plant that a call needs; the caller sets the inputs. */
 typedef struct {
     MODEL(batch) *batch;
     MODEL(run) *run;
@@ -56,7 +56,7 @@ static void MODEL(restore_state)(MODEL(stepper) *t)
     MODEL(forget)(t);
 }
 
-/* Take the steps of one call with the inputs u, and write the outputs; returns whether there are all. */
+/* Take the steps of one call with the inputs u, and write the outputs; returns whether all succeeded. */
 static int MODEL(steps_on)(MODEL(stepper) *t)
 {
     MODEL(batch) *b = t->batch;
@@ -78,7 +78,7 @@ static int MODEL(steps_on)(MODEL(stepper) *t)
     return 1;
 }
 
-/* Step all plants; returns 0, or which of them, from 1, has no step, and then restores all. */
+/* Step all plants; returns 0, or the number from 1 of a plant whose step failed, and restores all plants. */
 long MODEL(step_once)(MODEL(stepper) *all);
 long MODEL(step_once)(MODEL(stepper) *all)
 {

@@ -10,7 +10,7 @@ enum { ROUGH_ITERATIONS = 8 };
 /* The most steps of a survey; later magnitudes count when the run itself reaches them. */
 enum { MOST_SURVEYED = 10000 };
 
-/* Midpoint steps of length h by Newton's method, their middles in m->reached; returns who succeeds. */
+/* Midpoint steps of length h by Newton's method, midpoints in m->reached; returns the lanes that succeed. */
 static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
 {
     MODEL(block) *m = &b->m;
@@ -48,9 +48,9 @@ static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
 }
 
 /*
- * Prepare a lane for the next step of its survey; returns whether there is one. A step that fails is tried
- * anew from the middle of the one before it: there fast modes do not ring, as they do from end to end of
- * steps too long for them, with an amplitude that short steps would take for a motion.
+ * Prepare a lane for the next step of its survey; returns whether there is one. After a failed step, a shorter
+ * one begins at the midpoint of the step before: there fast modes do not ring. At the ends of steps too long for
+ * them they do, with an amplitude that short steps would take for a motion.
  */
 static int MODEL(go_on_surveying)(MODEL(batch) *b, int lane, double longest, int good)
 {

@@ -37,15 +37,15 @@ typedef struct {
     MODEL(run) *run;
     const MODEL(segment) *segment;
     double t, h;
-    double length, whole, step, part; /* of this step; before cuts; accepted; the part to cut at */
+    double length, whole, step, part; /* lengths: this step, before cuts, accepted; the fraction to cut at */
     double known, longer;
     double kept;   /* time of the last sample, or -HUGE_VAL */
     int written;   /* whether the current sample is written, though its step is repeated */
-    double steady; /* the length that was allowed to the step before, but for switches */
-    double hard;   /* a length at which steps are not solved: that of the last such step, and growing */
-    double aimed;  /* the length of a step but for a switch, just behind which it is to end; or 0 */
+    double steady; /* the length that the step before was allowed by its error, without switches */
+    double hard;   /* the length of the last step that Newton's method did not solve, growing since */
+    double aimed;  /* the length that a step aimed at a switch would have had without the switch; or 0 */
     double ahead;  /* time from the end of the step to the next switch, or HUGE_VAL */
-    long goal;     /* that switch */
+    long goal;     /* the next switch; -1 if none */
     double beyond; /* by how much time the step ends behind its switch */
     double passed; /* time of the last switch */
     long passing;  /* the row of `interval` of that switch; -1 if there was none */
@@ -105,7 +105,7 @@ typedef struct {
     MODEL(history) past;
     real *slack; /* branches: by how much time a step may end behind each switch; 0: not known */
     real *kept, *kept_sums, *kept_lost; /* at the last sample */
-    real *kept_branch;                  /* of the run, while a step begins there */
+    real *kept_branch;                  /* branches of the run, while a step begins at the last sample */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
     real *some_rate, *some_left, *some_side, *some_rows, *some_margin, *some_inputs;
     long sizes[SIZES];
@@ -133,8 +133,8 @@ enum { TRIED = 32, AGAIN = 12 };
 /* A refused step is repeated up to where a path functional begins to yield, if before this part. */
 #define YIELDS 0.999
 /*
- * A switching function below this part of its largest magnitude may be round-off, as at rest. Its sign does not
- * count if it makes no difference to the step, in tolerances: such steps may follow each other for long.
+ * A switching function below this fraction of its largest magnitude may be round-off, as at rest. Its sign change
+ * is ignored if it alters the step by less than NO_DIFFERENCE tolerances: else many short steps might follow.
  */
 #define NO_SWITCH 1e-13
 #define NO_DIFFERENCE 1e-5
@@ -142,16 +142,16 @@ enum { TRIED = 32, AGAIN = 12 };
 #define AT_END 1e-9
 #define AT_ONCE 1e-12
 /*
- * A step may end somewhat beyond its switch, where no stage lies: BEHIND is the longest such part. That
- * adds at most KINK_ERROR of the tolerance to its error, by the rates on both sides. Such errors have one sign
- * and add up: they are half as large behind MANY_KINKS switches, and fall with the number of switches.
+ * A step may end somewhat beyond its switch, where no stage lies: by at most the fraction BEHIND of its length, and
+ * so that the error, by the rates on both sides, is at most KINK_ERROR of the tolerance. Such errors have one sign
+ * and add up: the bound falls with the number of switches of the run, to half of it after MANY_KINKS.
  */
 #define BEHIND (0.99 * (1.0 - stage_at[STAGES - 1]) < 0.05 ? 0.99 * (1.0 - stage_at[STAGES - 1]) : 0.05)
 #define KINK_ERROR 0.1
 #define MANY_KINKS 50.0
 /*
- * How far a step goes beyond a switch of which that is not known yet, and a fixed one. A kink adds an error
- * proportional to the square of that, about this fraction of the tolerance; a jump, one proportional to it.
+ * The error, as a fraction of the tolerance, by which a step may end beyond a switch if the step is fixed or nothing
+ * is known of the switch yet. It is proportional to the distance at a jump, and to its square at a kink.
  */
 #define BEYOND 0.01
 
@@ -169,7 +169,7 @@ static void MODEL(inputs_at)(const MODEL(batch) *b, mask where, real t, real *u)
     }
 }
 
-/* The times at which the lanes' runs are. */
+/* The current time of the run in each lane. */
 static real MODEL(now)(const MODEL(batch) *b)
 {
     real t = zero;

@@ -56,7 +56,7 @@ def check_energies(spec: Tables) -> None:
 def _check_law(
     spec: Tables, law: LawField, owners: Mapping[str, str], hot: Mapping[str, str]
 ) -> None:
-    """Refuse a law of a store that depends on states of others; `owners` has their elements.
+    """Refuse a store's law that depends on states of other elements, which `owners` gives.
 
     `hot` is the body of each temperature.
     """
@@ -85,9 +85,9 @@ def _check_law(
 
 
 def _same_motions(spec: Tables, name: str, found: Mapping[str, str]) -> dict[str, str]:
-    """Return what an element calls states of others that move as its own; {} unless all do.
+    """Return an element's own names for states of other elements that move as its own do.
 
-    `found` has the elements of the others.
+    `found` has the element of each of these states; the result is {} unless all move alike.
     """
     own = {place: state for state, place in motions(spec, name).items()}
     moved = {
@@ -102,7 +102,7 @@ def _same_motions(spec: Tables, name: str, found: Mapping[str, str]) -> dict[str
 def motions(spec: Tables, name: str) -> dict[str, object]:
     """Return the branch whose across variable each state of an element is the integral of.
 
-    Of stores in parallel, these states move alike; charges and momenta do not.
+    Such states of stores in parallel move alike; charges and momenta do not.
     """
     ports = (port for port in spec.elements[name].ports(name) if isinstance(port, Storage))
     return {p.state: p.branch for p in ports if p.imposes is PowerVariable.THROUGH}
@@ -133,11 +133,11 @@ def _storage(spec: Tables, parts: tuple[str, ...], hot: Mapping[str, str]) -> st
 def _needed(
     spec: Tables, stores: Mapping[str, list[Storage | Body]], warm: Mapping[str, Expr]
 ) -> Iterator[Cmp]:
-    """Yield what [domain] has to say, besides what it says: what the kinds of elements need.
+    """Yield the conditions that [domain] lacks: those that the kinds of the elements require.
 
-    Divisors are positive, inner ones first.  With a body so are the factors of laws of which kinds
-    need nothing, as the k of the force k*q*T/T_0, and the temperature, which then depends on the
-    states of the stores, too.
+    Divisors must be positive, inner ones first.  With a body, so must be the factors of laws for
+    which kinds require nothing, as the k of the force k*q*T/T_0, and the temperature, which then
+    depends on the states of the stores, too.
     """
     known = {_normal_form(parse_condition(text, "domain.assume")) for text in spec.domain.assume}
     free: set[Expr] = {Sym(symbol) for symbol in states(spec)}
@@ -163,7 +163,7 @@ def _normal_form(condition: Cmp) -> tuple[str, frozenset[Expr]]:
 
 
 def _positive_factors(port: Storage | Body) -> Iterator[Expr]:
-    """Yield the factors, free of its state, of the terms that a store's law adds up."""
+    """Yield the factors without the state in each term of a store's law."""
     for term in port.law.terms if isinstance(port.law, Add) else (port.law,):
         above, below = factors(term, most=1)
         if not any(isinstance(factor, Num) and factor.value < 0 for factor in above):

@@ -127,7 +127,7 @@ def _check_domain(spec: Tables) -> None:
             _check_words(spec, condition.tree, condition.where, (), words)
             _check_banks(condition, lanes)
             _check_temperature(spec, condition)
-        except SpecError as error:  # nobody counts conditions
+        except SpecError as error:  # the text says more than the condition's number
             error.what = f"{quote(condition_text(condition.tree))}: {error.what}"
             raise
 
@@ -261,7 +261,7 @@ def _beside_lane(spec: Tables, owner: str, bank: str, element: str) -> str:
 
 
 def _states_of_letter(spec: Tables, letter: str, words: Collection[str]) -> str:
-    """Return the symbols that a letter may be meant for where letters have no meaning."""
+    """Return the symbols that a letter may stand for, where laws do not know letters."""
     if letter == "T" and (hot := [word for word in temperatures(spec) if word in words]):
         return f"temperatures go by their bodies: {listing(hot)}"
     owners = states(spec).items()

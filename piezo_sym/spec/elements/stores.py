@@ -192,10 +192,10 @@ def _continued(size: Size, element: Any, state: str) -> Expr:
 
 
 def _positive_size(size: Size, element: Any, state: str) -> tuple[Cmp, ...]:
-    """Return that the size is positive; of one that is 0/0 at rest, as sinh(q)/q, not negative.
+    """Return the conditions that the size is positive, or >= 0 if it is 0/0 at rest, as sinh(q)/q.
 
-    Its sign is that of state times co-state, which has a value at rest, too; there the limit is the
-    co-state's slope.  One with a kink is bounded there if the co-state is zero.
+    In that case its sign is that of state times co-state, which has a value at rest, too; its limit
+    at rest is the co-state's slope.  With a kink at rest, it is bounded if the co-state is 0 there.
     """
     if getattr(element, size.field) is None:
         return ()
