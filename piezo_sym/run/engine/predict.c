@@ -8,7 +8,7 @@
 
 /* Steps are recorded if those of a run take more iterations than this: few are not worth the copies of rates. */
 #define LABORIOUS 2.5
-/* By how much of its length a recorded step may be extended, at either end. */
+/* The fraction of its length by which a recorded step may be extrapolated at either end. */
 #define EXTENDED 0.25
 /* The most by which the change from one time to the next may grow, as a factor. */
 #define FASTEST_DRIFT 2.0
@@ -108,7 +108,7 @@ static int MODEL(recalls)(const MODEL(batch) *b, int lane, double *ahead, double
     MODEL(lane) *l = b->lane + lane;
     if (l->recalled < 0 || l->phase != STEP || l->refused || l->settled || IN(b->m.over, lane))
         return 0;
-    if (l->recorded - l->recalled > past->steps) /* later ones are in its place */
+    if (l->recorded - l->recalled > past->steps) /* it has been overwritten */
         return 0;
     const double begin = l->t - l->passed;
     const long place = MODEL(seek_recorded)(past, l, lane, begin + 0.5 * l->length);
