@@ -41,7 +41,13 @@ COHERENT = {
     "S": (-1, -2, 3, 2), "Wb": (1, 2, -2, -1), "T": (1, 0, -2, -1), "H": (1, 2, -2, -2),
     "mol": (0, 0, 0, 0, 0, 1), "rad": (),
 }  # fmt: skip
-#: Prefixes of these that need no pint, and their powers of ten.
+#: Units that need no pint: the coherent one of each, its factor to that, and its powers.
+QUICK = {name: (name, Fraction(1), powers) for name, powers in COHERENT.items()} | {
+    "g": ("kg", Fraction(1, 1000), COHERENT["kg"]),
+    "l": ("m**3", Fraction(1, 1000), (0, 3)),
+    "bar": ("Pa", Fraction(100_000), COHERENT["Pa"]),
+}
+#: Prefixes of these, and their powers of ten.
 PREFIXES = {"p": -12, "n": -9, "u": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
 #: The units of specs, by pint's long names; each may have an SI prefix.
 _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
@@ -201,12 +207,12 @@ def _named(name: str, where: str, value: float | None, alone: bool = True, text:
 
     One with an offset is a temperature if it stands `alone`, else a difference, as in W/degC.
     """
-    prefix = name[:1] if name[1:] in COHERENT.keys() - {"1", "kg"} else ""
-    if name in COHERENT or prefix in PREFIXES:
-        si = name if name in COHERENT else name[1:]
-        factor = Fraction(1) if si == name else Fraction(10) ** PREFIXES[prefix]
-        powers = (*COHERENT[si], *(0,) * len(BASES))[: len(BASES)]
-        return Unit(name, si, factor, tuple(map(Fraction, powers)))
+    prefixed = name[:1] in PREFIXES and name[1:] in QUICK.keys() - {"1", "kg"}
+    if name in QUICK or prefixed:
+        si, factor, powers = QUICK[name if name in QUICK else name[1:]]
+        scale = Fraction(1) if name in QUICK else Fraction(10) ** PREFIXES[name[0]]
+        powers = (*powers, *(0,) * len(BASES))[: len(BASES)]
+        return Unit(name, si, scale * factor, tuple(map(Fraction, powers)))
     if _root(name) not in UNITS:
         raise SpecError(f"unknown unit {quote(name)}", where, remedy=_meant(name, text))
     try:
