@@ -223,7 +223,8 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
     data = model.flatten().model_dump()
     shape = shape_hash(data)
     if found := _kept_template(shape):
-        _check_derivation(model)
+        if found.joined:
+            _check_derivation(model)
         return cache_module(model.name, model.sha256, found.filled(data), own_sources())
 
     from piezo_sym.build import keep_proved, report_and_texts

@@ -14,4 +14,5 @@ def template_of(iphs: IPHS) -> Template:
     texts = printed(blank(lower(iphs, "", q)), collocation_of(iphs, q))
     tables = iphs.model.parameters, iphs.model.inputs
     factors = {n: str(entry.dimension.factor) for table in tables for n, entry in table.items()}
-    return Template(texts, factors, quick=not iphs.junction.joints and are_all_margins(iphs.model))
+    joined = bool(iphs.junction.joints)
+    return Template(texts, factors, not joined and are_all_margins(iphs.model), joined)

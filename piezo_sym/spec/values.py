@@ -46,6 +46,8 @@ class Template:
     factors: Mapping[str, str]
     #: Whether the module's own `margins` cover all checks of values that loading a spec makes.
     quick: bool
+    #: Whether stores are joined: then their initial values may contradict each other.
+    joined: bool
     verdict: str = ""  # in one line; it holds for all values in the domain
 
     def filled(self, data: Mapping[str, Any]) -> Texts:

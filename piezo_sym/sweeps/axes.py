@@ -108,13 +108,13 @@ def read_values(
     """Return a target's values, one per point; raise `UsageError` at the first that is invalid."""
     if target.is_size:
         return tuple(integer(value, f"{where}[{n}]", 1) for n, value in enumerate(given))
-    numbers = isinstance(given, np.ndarray) and given.ndim == 1 and given.dtype.kind in "iuf"
-    if numbers and np.isfinite(given).all():
-        return np.array(given, dtype=float)
+    plain = isinstance(given, np.ndarray) and given.ndim == 1 and given.dtype.kind in "iuf"
+    if plain and np.isfinite(array := np.array(given, dtype=float)).all():
+        return array
     listed = enumerate(given.tolist() if isinstance(given, np.ndarray) else given)
     values = tuple(read_value(target, value, f"{where}[{n}]", duration) for n, value in listed)
-    all_floats = all(isinstance(value, float) for value in values)
-    return np.array(values, dtype=float) if all_floats else values
+    numbers = all(isinstance(value, float) for value in values)
+    return np.array(values, dtype=float) if numbers else values
 
 
 def read_value(target: Target, value: object, where: str, duration: float) -> Value:

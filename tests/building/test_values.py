@@ -88,6 +88,46 @@ def test_an_edit_of_a_value_proves_and_compiles_nothing(spec, cache):
     assert first.attrs["parameter_M"] == 0.0035
 
 
+#: A stop's state starts within its limit, which loading checks: so the spec is read.
+RUBBED = """
+[model]
+name = "mine"
+title = "A mass of some grams that rubs"
+[parameters]
+m   = { value = 5.0, unit = "g" }
+k   = { value = 2.0, unit = "N/m" }
+F_c = { value = 0.1, unit = "N" }
+T_0 = { value = 300.0, unit = "K" }
+c   = { value = 1.0, unit = "J/K" }
+[inputs]
+F = { unit = "N" }
+[elements]
+mass = { kind = "mass", at = "tip", mass = "m", state = "p" }
+rub  = { kind = "stop", between = ["tip", "wall"], stiffness = "k", limit = "F_c", heats = "body" }
+load = { kind = "force_source", at = "tip", input = "F" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
+"""
+
+
+def test_an_edit_of_a_value_beside_a_stop_derives_nothing(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(RUBBED)
+    module_of(path)
+    path.write_text(RUBBED.replace("5.0", "6.0"))
+    code = (
+        "import sys, piezo_sym\n"
+        f"run = piezo_sym.simulate({str(path)!r}, duration=1e-3)\n"
+        "print(run.attrs['parameter_m'], {'sympy', 'pint'} & {*sys.modules})\n"
+    )
+    said = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+    ).stdout
+    assert said == "0.006 set()\n"
+    path.write_text(RUBBED.replace('k   = { value = 2.0', 'k   = { value = -2.0'))
+    with pytest.raises(SpecError, match="outside the domain"):
+        module_of(path)
+
+
 def test_an_edited_module_is_what_the_edited_spec_generates(spec):
     spec["model"]["name"] = "mine"
     path = written(spec)
