@@ -32,6 +32,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     long at = MODEL(make)(m, task->runs->p, task->extra, b->sizes, memory);
 #define PLACE(array, size) (b->array = memory ? memory + at : NULL, at += (size))
     PLACE(rate, m->n);
+    PLACE(rings, m->n);
     PLACE(side, m->branches);
     PLACE(after, m->branches);
     PLACE(slack, m->branches);
@@ -143,6 +144,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     b->lane[lane].h = b->fixed > 0.0 ? b->fixed : b->first;
     b->lane[lane].steady = b->lane[lane].ahead = b->lane[lane].hard = HUGE_VAL;
     b->lane[lane].kept = -HUGE_VAL;
+    SET(b->ringing, lane, 0);
     b->lane[lane].drift = 1.0;
     b->lane[lane].which = b->lane[lane].turned = b->lane[lane].goal = -1;
     b->lane[lane].passing = b->lane[lane].recalled = -1;

@@ -101,8 +101,8 @@ static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
             l->recalled = -1;
             continue;
         }
-        if (!IN(t->found, lane)) {
-            l->known = 0.0;
+        if (!IN(t->found, lane)) { /* a shorter step is predicted as this one was, but the next one is not */
+            l->known = l->predicted && !l->refused && b->fixed == 0.0 ? l->known : 0.0;
             if (b->fixed > 0.0)
                 MODEL(refuse_fixed)(b, lane);
             else {

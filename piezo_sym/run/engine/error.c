@@ -51,6 +51,8 @@
 #define TURNS(ratio) largest_of(least(2.5 * (ratio) - 1.5, wide(1.0)), zero)
 /* A state is stiff if the equations reduce its misfit by more than this factor, twice in a row. */
 #define REDUCED 2.5
+/* The same for one so stiff that Gauss steps do not damp what it starts with: it rings at their ends. */
+#define RINGS 1e5
 /* Factor on errors of steps that contain kinks, whose errors add up over a run. */
 #define KINKS_WITHIN (STAGES > 4 ? 1.3 : 1.8)
 /*
@@ -79,16 +81,17 @@ static inline real MODEL(slow_part)(real low, real high, real last, real before)
 
 /*
  * The misfits of some states' rates, times `gamma`, in some_rate; and the fractions of them that are left at the
- * end of the step, in some_left. Where `series` is 0, the series of the rates is not used.
+ * end of the step, in some_left. The rates at its ends are not used where `ends` is 0, nor the series of the rates
+ * where `series` is 0.
  */
-static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long first, long end)
+static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real ends, real series, long first, long end)
 {
     const long n = b->m.n;
-    const real *const rates = b->m.rates, *const begins = b->rate, *const ends = b->end_rate;
+    const real *const rates = b->m.rates, *const begin = b->rate, *const end_rate = b->end_rate;
     real *restrict const left = b->some_left, *restrict const found = b->some_rate;
 #pragma omp simd
     for (long k = first; k < end; ++k) {
-        real low = -begins[k], high = -ends[k], mean = zero, last = zero, before = zero;
+        real low = -begin[k], high = -end_rate[k], mean = zero, last = zero, before = zero;
         real most = 1e-300 + zero;
         for (long j = 0; j < STAGES; ++j) {
             const real rate = rates[j * n + k];
@@ -103,6 +106,8 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long 
         const real per_most = 1.0 / most;
         const real smooth = least(size_of(last) * per_most, wide(1.0));
         const real next = STAGES > 2 ? (real)(series * last * LIKE_THE_LAST(smooth)) : (real)zero;
+        low = chosen(ends > 0.0, low, zero);
+        high = chosen(ends > 0.0, high, zero);
         const real misfit = further(further(low, high), next);
         const real share = least(size_of(misfit) * per_most, wide(1.0));
         const real slow = MODEL(slow_part)(low, high, last, before);
@@ -114,17 +119,48 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real series, long 
 }
 
 /* The misfits of all states; where stops yield, no series is used for their inner states. */
-static void MODEL(all_misfits)(const MODEL(batch) *b, real gamma)
+static void MODEL(all_misfits)(const MODEL(batch) *b, real gamma, real ends)
 {
-    MODEL(misfits)(b, gamma, wide(1.0), 0, b->m.n);
+    MODEL(misfits)(b, gamma, ends, wide(1.0), 0, b->m.n);
 #if defined(PATHS)
     const real series = chosen(b->m.yield[HOW_OFTEN] > 0.0, zero, wide(1.0));
     for (long n = 0; n < PATHS; ++n) {
         const int *path = MODEL(path)[n];
         const long first = b->m.first[path[INNER]], lanes = path[BANK] < 0 ? 1 : b->m.lanes[path[BANK]];
-        MODEL(misfits)(b, gamma, series, first, first + lanes);
+        MODEL(misfits)(b, gamma, ends, series, first, first + lanes);
     }
 #endif
+}
+
+/*
+ * The misfits, once and twice filtered by the equations. Where a state rings, the rates at the ends of the step
+ * tell of that alone, and those of the stages count: there it has its equilibrium.
+ */
+static void MODEL(filter_misfits)(MODEL(batch) *b, real gamma, real *once, real *twice)
+{
+    const MODEL(block) *m = &b->m;
+    real ends = wide(1.0);
+    for (int again = 0; again < 2; ++again) {
+        mask rings = nowhere;
+        MODEL(all_misfits)(b, gamma, ends);
+        memcpy(once, b->some_rate, (size_t)m->n * sizeof(real));
+        MODEL(solve_real)(m, gamma, m->slope, m->real_factor, once);
+        memcpy(twice, once, (size_t)m->n * sizeof(real));
+        MODEL(solve_real)(m, gamma, m->slope, m->real_factor, twice);
+        for (long k = 0; k < m->n; ++k) {
+            const real misfit = size_of(b->some_rate[k]), error = size_of(once[k]);
+            const mask so = (misfit > RINGS * error) & (error > RINGS * size_of(twice[k]));
+            if (!again)
+                b->rings[k] = chosen(so, wide(1.0), zero);
+            rings |= so;
+        }
+        if (STAGES < 3 || again)
+            break;
+        b->ringing = rings;
+        if (!any(rings))
+            break;
+        ends = chosen(rings, zero, wide(1.0));
+    }
 }
 
 /*
@@ -133,16 +169,12 @@ static void MODEL(all_misfits)(const MODEL(batch) *b, real gamma)
  * How stiff a state is shows in how much the equations reduce its misfit. They are applied twice,
  * for in an oscillation one state or another has no error at the moment.
  */
-static real MODEL(error)(const MODEL(batch) *b, real h)
+static real MODEL(error)(MODEL(batch) *b, real h)
 {
     const MODEL(block) *m = &b->m;
     const real gamma = h * filter;
     real *const once = m->gap, *const twice = m->prior; /* no longer needed by Newton's method */
-    MODEL(all_misfits)(b, gamma);
-    memcpy(once, b->some_rate, (size_t)m->n * sizeof(real));
-    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, once);
-    memcpy(twice, once, (size_t)m->n * sizeof(real));
-    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, twice);
+    MODEL(filter_misfits)(b, gamma, once, twice);
     const real per_tolerance = 1.0 / wide(b->tolerance);
     real pulled = zero, slow = 1e-300 + zero, worst = zero;
     for (long k = 0; k < m->n; ++k) {

@@ -46,6 +46,14 @@ static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known,
         MODEL(rates_at)(m, b->known, behind + slope * stage_at[i], rates);
         for (long k = 0; k < m->n; ++k) /* zero for a fixed step, which may be much longer than the fastest time constant */
             rates[k] = chosen(known, rates[k] + jump[k], b->fixed > 0.0 ? zero : b->rate[k]);
+        if (!any(known & b->ringing))
+            continue;
+        /* what rings takes the same course in a step of any length, from the other side if STAGES is odd */
+        const real turn = STAGES % 2 ? chosen(behind > 0.5, wide(-1.0), wide(1.0)) : wide(1.0);
+        for (long k = 0; k < m->n; ++k) {
+            const mask rings = known & b->ringing & (b->rings[k] > 0.0);
+            rates[k] = chosen(rings, turn * b->known[i * m->n + k] / slope, rates[k]);
+        }
     }
 }
 

@@ -99,6 +99,8 @@ typedef struct {
     double stop, tolerance, first, longest, fixed;
     double beyond; /* part of a step that may lie beyond the switch at its end, where no stage lies */
     real *rate, *side, *sums, *lost, *known;       /* at the beginning of a step; of the step before */
+    real *rings; /* n: whether a state is so stiff that it rings undamped; see error.c */
+    mask ringing; /* lanes with such states */
     real *after; /* branches: the length for a step after each switch; 0: not known */
     real *widest; /* branches: the largest magnitude of each switching function so far */
     real *interval, *successor; /* 2*branches: see learn_interval */
