@@ -127,45 +127,15 @@ def test_the_scale_of_a_stiff_state_is_that_of_its_motion(rtol):
     assert error < 10 * rtol  # 25 times 1e-6 before, and 56 times 1e-4
 
 
-#: Beyond pull-in the gap closes: its squeeze film damps the plate's momentum ever faster, which then rings.
-PULL_IN = """
-[model]
-name = "pull_in"
-title = "An electrode that is pulled in, on a squeeze film"
-[parameters]
-m   = { value = 2.0, unit = "ug" }
-k   = { value = 8.0, unit = "N/m" }
-d   = { value = 20.0, unit = "uN*s/m" }
-g_0 = { value = 4.0, unit = "um" }
-e_A = { value = 8.854e-18, unit = "F*m" }
-R   = { value = 20.0, unit = "kohm" }
-T_0 = { value = 300.0, unit = "K" }
-c   = { value = 2.0, unit = "mJ/K" }
-[inputs]
-V_in = { unit = "V" }
-[domain]
-assume = ["g_0 > 0", "e_A > 0", "d >= 0", "R > 0", "q < g_0"]
-[elements]
-flexure = { kind = "spring", between = ["plate", "wall"], stiffness = "k", state = "q" }
-plate = { kind = "mass", at = "plate", mass = "m", state = "p" }
-film = { kind = "damper", between = ["plate", "wall"], force = "d*v/(1 - q/g_0)**3", heats = "die" }
-line = { kind = "resistor", between = ["in", "el"], voltage = "R*i", heats = "die" }
-source = { kind = "voltage_source", between = ["in", "gnd"], input = "V_in" }
-die = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
-[elements.gap]
-kind = "storage"
-energy = "Q**2*(g_0 - x)/(2*e_A)"
-states.Q = { rate = "current", between = ["el", "gnd"] }
-states.x = { rate = "velocity", between = ["plate", "wall"] }
-"""
+PULL_IN = load(Path(__file__).with_name("pull_in.toml"))
 
 
 @pytest.mark.parametrize("voltage", [20.0, 60.0])
 def test_a_mode_that_rings_far_below_the_tolerance_does_not_hold_a_run_up(voltage):
     """Its momentum is off by 1e-6 of its scale, and rates at the ends of steps tell of that alone."""
     options = {"inputs": {"V_in": voltage}, "duration": 2e-3, "times": 21}
-    run = simulate(parse(PULL_IN), rtol=1e-5, **options)
-    exact = simulate(parse(PULL_IN), method="Radau", rtol=1e-10, **options)
+    run = simulate(PULL_IN, rtol=1e-5, **options)
+    exact = simulate(PULL_IN, method="Radau", rtol=1e-10, **options)
     assert run.attrs["accepted_steps"] < 20_000  # 10^6 in the first ms without
     assert np.abs(run.S - exact.S).max() < 1e-5 * np.abs(exact.S).max()
     for name, size in (("q", 4e-6), ("Q", float(np.abs(exact.Q).max()))):

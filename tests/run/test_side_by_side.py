@@ -131,6 +131,16 @@ def test_members_whose_motions_repeat_run_as_they_do_alone():
     assert np.array_equal(others.states[8:], together.states[8:])
 
 
+@pytest.mark.parametrize("stages", [None, 3])
+def test_members_with_modes_that_ring_run_as_they_do_alone(stages):
+    """Which states ring is known lane by lane."""
+    model, drive = load(Path(__file__).with_name("pull_in.toml")), sine(40.0, 2e3, offset=30.0)
+    members = Members(model, 11, 5e-4, {"V_in": drive})
+    alone, together = (members.run(together=on, rtol=1e-5, stages=stages) for on in (False, True))
+    assert np.array_equal(alone.states, together.states)
+    assert np.array_equal(alone.work, together.work)
+
+
 def test_members_that_fail_leave_nothing_to_the_next_in_their_lanes():
     """More members than lanes: what a lane tries when its run sticks is not for the next run."""
     members = Members(parse(QUADRATIC), 20, 3.0, {"F": sine(40.0, 1.2)})

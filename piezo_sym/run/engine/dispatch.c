@@ -87,7 +87,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
 /* Refuse steps without rates, or with large errors; find the switches in the others. */
 static void MODEL(judged)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
-    const real worst = any(t->planned) ? MODEL(error)(b, t->h) : (real)zero;
+    const real worst = any(t->planned) ? MODEL(error)(b, t->h, t->planned & t->found) : (real)zero;
     const real longer = MODEL(growth)(b, worst);
     const mask may_cross = t->steps & t->found & none_of(b->m.over);
     const mask across = MODEL(crossed)(b, may_cross, t->good, t->begin, t->h, t->crossing);

@@ -136,7 +136,7 @@ static void MODEL(all_misfits)(const MODEL(batch) *b, real gamma, real ends)
  * The misfits, once and twice filtered by the equations. Where a state rings, the rates at the ends of the step
  * tell of that alone, and those of the stages count: there it has its equilibrium.
  */
-static void MODEL(filter_misfits)(MODEL(batch) *b, real gamma, real *once, real *twice)
+static void MODEL(filter_misfits)(MODEL(batch) *b, real gamma, mask where, real *once, real *twice)
 {
     const MODEL(block) *m = &b->m;
     real ends = wide(1.0);
@@ -149,14 +149,14 @@ static void MODEL(filter_misfits)(MODEL(batch) *b, real gamma, real *once, real 
         MODEL(solve_real)(m, gamma, m->slope, m->real_factor, twice);
         for (long k = 0; k < m->n; ++k) {
             const real misfit = size_of(b->some_rate[k]), error = size_of(once[k]);
-            const mask so = (misfit > RINGS * error) & (error > RINGS * size_of(twice[k]));
+            const mask so = where & (misfit > RINGS * error) & (error > RINGS * size_of(twice[k]));
             if (!again)
-                b->rings[k] = chosen(so, wide(1.0), zero);
+                b->rings[k] = chosen(where, chosen(so, wide(1.0), zero), b->rings[k]);
             rings |= so;
         }
         if (STAGES < 3 || again)
             break;
-        b->ringing = rings;
+        b->ringing = (b->ringing & none_of(where)) | rings;
         if (!any(rings))
             break;
         ends = chosen(rings, zero, wide(1.0));
@@ -164,17 +164,17 @@ static void MODEL(filter_misfits)(MODEL(batch) *b, real gamma, real *once, real 
 }
 
 /*
- * The error of each lane's step, in tolerances of each state's scale.
+ * The error of each lane's step, in tolerances of each state's scale; lanes in `where` learn which states ring.
  *
  * How stiff a state is shows in how much the equations reduce its misfit. They are applied twice,
  * for in an oscillation one state or another has no error at the moment.
  */
-static real MODEL(error)(MODEL(batch) *b, real h)
+static real MODEL(error)(MODEL(batch) *b, real h, mask where)
 {
     const MODEL(block) *m = &b->m;
     const real gamma = h * filter;
     real *const once = m->gap, *const twice = m->prior; /* no longer needed by Newton's method */
-    MODEL(filter_misfits)(b, gamma, once, twice);
+    MODEL(filter_misfits)(b, gamma, where, once, twice);
     const real per_tolerance = 1.0 / wide(b->tolerance);
     real pulled = zero, slow = 1e-300 + zero, worst = zero;
     for (long k = 0; k < m->n; ++k) {

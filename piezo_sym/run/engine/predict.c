@@ -30,6 +30,19 @@ static void MODEL(rates_at)(const MODEL(block) *m, const real *rates, real at, r
     }
 }
 
+/* A state that rings takes the same course in a step of any length, from the other side if STAGES is odd. */
+static void MODEL(predict_ringing)(const MODEL(batch) *b, real behind, real slope, mask known)
+{
+    const MODEL(block) *m = &b->m;
+    const mask turns = STAGES % 2 ? (mask)(behind > 0.5) : nowhere;
+    const real ratio = chosen(turns, wide(-1.0), wide(1.0)) / slope;
+    for (long i = 0; i < STAGES; ++i)
+        for (long k = 0; k < m->n; ++k) {
+            const mask rings = known & b->ringing & (b->rings[k] > 0.0);
+            m->rates[i * m->n + k] = chosen(rings, ratio * b->known[i * m->n + k], m->rates[i * m->n + k]);
+        }
+}
+
 /* Predict rates at stages, from the first one on: by the known step's polynomial, or as at the beginning. */
 static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known, mask turned, long first)
 {
@@ -46,15 +59,9 @@ static void MODEL(predict)(MODEL(batch) *b, real behind, real slope, mask known,
         MODEL(rates_at)(m, b->known, behind + slope * stage_at[i], rates);
         for (long k = 0; k < m->n; ++k) /* zero for a fixed step, which may be much longer than the fastest time constant */
             rates[k] = chosen(known, rates[k] + jump[k], b->fixed > 0.0 ? zero : b->rate[k]);
-        if (!any(known & b->ringing))
-            continue;
-        /* what rings takes the same course in a step of any length, from the other side if STAGES is odd */
-        const real turn = STAGES % 2 ? chosen(behind > 0.5, wide(-1.0), wide(1.0)) : wide(1.0);
-        for (long k = 0; k < m->n; ++k) {
-            const mask rings = known & b->ringing & (b->rings[k] > 0.0);
-            rates[k] = chosen(rings, turn * b->known[i * m->n + k] / slope, rates[k]);
-        }
     }
+    if (any(known & b->ringing))
+        MODEL(predict_ringing)(b, behind, slope, known);
 }
 
 /* The place of a recorded step, by its number in the run. */
