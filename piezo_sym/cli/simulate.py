@@ -98,7 +98,6 @@ def simulate(
     units = Units(spec)
     signals = dict(pairs(inputs or (), "--input", units.signal))
     starts = dict(pairs(initial or (), "--initial", units.initial))
-    units.starts(starts)
     span = {"duration": duration, "t0": t0, "times": times, "stop": stop}
     solver = {"rtol": rtol, "step": step, "order": order, "method": method, "outputs": outputs}
     result = _run(

@@ -7,7 +7,7 @@ SI, or an error that names the option.
 
 import json
 import re
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from inspect import Parameter, signature
 from pathlib import Path
@@ -183,7 +183,7 @@ class Units:
     Attributes
     ----------
     assumed : a line for each number that was read in SI, although its declared unit is another,
-        for each input that no element uses, and for states that start apart.
+        and for each input that no element uses.
     """
 
     def __init__(self, spec: str) -> None:
@@ -237,21 +237,6 @@ class Units:
 
         hot = {f"T_{body}": "K" for body in bodies(self._flat)}
         return hot | {name: unit_text(d) for name, d in state_dimensions(self._flat).items()}
-
-    def starts(self, given: Collection[str]) -> None:
-        """Say of states that start without others of the same rate what that means."""
-        from piezo_sym.spec.checks.energies import motions
-
-        alike: dict[object, list[str]] = {}
-        for element in self._flat.elements if given else ():
-            for state, branch in motions(self._flat, element).items():
-                alike.setdefault(branch, []).append(state)
-        for states in alike.values():
-            first = next((state for state in states if state in given), "")
-            others = [state for state in states if first and state not in given]
-            kept = ", ".join(f"{first} - {state}" for state in others)
-            line = f"{listing(states)} have one rate, and {first} is given; constant in this run"
-            self.assumed += [f"{line}: {kept}"] * bool(others)
 
     @cached_property
     def _flat(self) -> Any:

@@ -159,7 +159,9 @@ def test_springs_in_parallel_keep_their_difference(pressure: float, start: float
     The slowest motion, a minute, is 10 million times as slow as the fastest.
     """
     A, k, k_e, gap = 80e-4, 5e3, 2e8, 50e-3
-    found = operating_point(parse(PRESS), inputs={"p_s": pressure}, initial={"x_e": start})
+    found = operating_point(
+        parse(PRESS), inputs={"p_s": pressure}, initial={"x_e": start, "x": 0.0}
+    )
     free, touching = A * pressure / k, (A * pressure + k_e * (gap - start)) / (k + k_e)
     x = free if free + start < gap else touching
     assert found.initial["x"] == pytest.approx(x, rel=1e-12)

@@ -597,7 +597,7 @@ def test_a_start_apart_from_states_of_the_same_rate_is_said(call, spec_file):
         "[elements.load]", f'[elements.guide]\nkind = "spring"\n{guide}\n[elements.load]'
     )
     run = ("simulate", spec, "--duration", "1e-4", "--initial", "x=3um")
-    said = "q, x have one rate, and x is given; constant in this run: x - q"
-    assert said in call(*run).out.splitlines()
-    assert "have one rate" not in call(*run, "--initial", "q=1um").out
-    assert "have one rate" not in call(*run[:-1], "Q_C=0").out
+    said = "piezo-sym: q, x move at one rate; given only x, they keep x - q as at the start: "
+    assert f"{said}give q, too, if all are one displacement" in call(*run).err.splitlines()
+    assert "one rate" not in call(*run, "--initial", "q=1um").err
+    assert "one rate" not in call(*run[:-1], "Q_C=0").err
