@@ -17,6 +17,7 @@ from piezo_sym.cli.output import about
 from piezo_sym.errors import SpecError, UsageError, listing, nearest, quote
 from piezo_sym.expressions.incomplete import with_a_point
 from piezo_sym.files import path_text
+from piezo_sym.run.checks import known_keys
 
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)(?P<end>\)?)")
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -220,6 +221,8 @@ class Units:
         used = re.search(rf"\b{re.escape(name)}\b", json.dumps(users, default=str))
         if name in self._declared and not used:
             self.assumed.append(f"{name}: no element uses this input")
+        if text.startswith("@"):  # or the column of that name would be looked for
+            known_keys({name: text}, self._content.get("inputs") or (), "simulate.inputs")
         return signal(text, where, self._value)
 
     def _value(self, text: str, where: str, place: str) -> float:

@@ -106,6 +106,7 @@ SHORT = ["simulate", "oscillator", "--duration", "1"]
         ([*SHORT, "--continue", "nofile.nc"], "there is no such file or store; check the path"),
         ([*SHORT, "-i", "F=@absent_table.csv"], "No such file or directory; check the path"),
         ([*SHORT, "-i", "F=@drve.csv"], "did you mean 'drive.csv'?"),
+        ([*SHORT, "-i", "f=@two.csv"], "simulate.inputs: unknown name 'f'; did you mean 'F'?"),
         ([*SHORT, "--event", "k=q"], "the run has a quantity of that name"),
         ([*SHORT, "--event", "hit=q>0.005"], "write 'q - 0.005'"),
         ([*SHORT, "--step", "1e-12"], "simulate.step: 1e-12 s is too short a step"),
@@ -118,6 +119,7 @@ SHORT = ["simulate", "oscillator", "--duration", "1"]
 def test_a_command_line(refused, spec_file, tmp_path, monkeypatch, words, advice):
     spec_file()
     (tmp_path / "drive.csv").touch()
+    (tmp_path / "two.csv").write_text("t,F,v\n0,1,2\n1,1,2\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     assert advice in refused(*words)
 
