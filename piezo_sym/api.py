@@ -19,9 +19,9 @@ from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
 from piezo_sym.run import simulate as run
 from piezo_sym.run.checks import known_keys
-from piezo_sym.run.inputs import warn_parted
 from piezo_sym.run.simulate import stages_of
 from piezo_sym.run.stepper import Stepper as Steps
+from piezo_sym.spec.starts import warn_parted
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model

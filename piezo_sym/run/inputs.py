@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, nextafter
-from pathlib import Path
 from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from piezo_sym.errors import UsageError, quote
+from piezo_sym.errors import InputWarning, UsageError, quote
 from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
 from piezo_sym.run.functions import InputFunction
 from piezo_sym.run.module import GeneratedModule, names_elsewhere
@@ -25,11 +24,6 @@ from piezo_sym.run.samples import Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal
 
 InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
-
-
-class InputWarning(UserWarning):
-    """What is left out: an input that drove the run that goes on, or a state of the same rate."""
-
 
 CLOSE = 1e-12  # fraction of the end time: breaks closer than this are merged
 LEAST_JUMP = 1e-6  # of an input's size nearby: smaller differences are round-off of a corner
@@ -194,20 +188,6 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
         )
         text += ", from here on: the run that goes on had other values; give it again to keep it"
         warnings.warn(text, InputWarning, stacklevel=5)
-
-
-def warn_parted(model: Any, module: GeneratedModule, initial: object) -> None:
-    """Warn of states that are given a start while others, which move at their rate, are not."""
-    given = {*initial} if isinstance(initial, Mapping) else set()
-    units = {record.unit for record in module.STATES if record.name in given}
-    if all(r.name in given or r.unit not in units for r in module.STATES):
-        return  # nor is the spec read
-    from piezo_sym.spec.checks.energies import parted
-    from piezo_sym.spec.load import load
-
-    spec = load(model) if isinstance(model, str | Path) else model
-    for text in parted(spec.flatten(), given):
-        warnings.warn(text, InputWarning, stacklevel=3)
 
 
 def as_signal(value: object, where: str, start: float = 0.0) -> Signal:

@@ -27,10 +27,11 @@ from piezo_sym.files import path_of
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
 from piezo_sym.run.checks import integer
-from piezo_sym.run.inputs import InputValue, warn_parted
+from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.simulate import simulate
+from piezo_sym.spec.starts import warn_parted
 from piezo_sym.sweeps.frame import Memory, Results, frame_of
 from piezo_sym.sweeps.plan import Plan, Reduction, read_plan
 from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for

@@ -604,6 +604,6 @@ def test_a_start_apart_from_states_of_the_same_rate_is_said(call, spec_file):
     )
     run = ("simulate", spec, "--duration", "1e-4", "--initial", "x=3um")
     said = "piezo-sym: q, x move at one rate; given only x, they keep x - q as at the start: "
-    assert f"{said}give q, too, if all are one displacement" in call(*run).err.splitlines()
+    assert f"{said}give q, too, if all are one quantity" in call(*run).err.splitlines()
     assert "one rate" not in call(*run, "--initial", "q=1um").err
     assert "one rate" not in call(*run[:-1], "Q_C=0").err

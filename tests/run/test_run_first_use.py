@@ -14,8 +14,7 @@ from piezo_sym import (
     sweep,
 )
 from piezo_sym.cli import run
-from piezo_sym.errors import PiezoError, RunError, UsageError
-from piezo_sym.run.inputs import InputWarning
+from piezo_sym.errors import InputWarning, PiezoError, RunError, UsageError
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import find
 

@@ -5,7 +5,7 @@ its charge and the body's entropy; an inductor whose inductance depends on a gap
 linkage and the gap.  For these there is the kind `storage`.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import reduce
 
 from piezo_sym.errors import SpecError, listing, quote
@@ -106,23 +106,6 @@ def motions(spec: Tables, name: str) -> dict[str, object]:
     """
     ports = (port for port in spec.elements[name].ports(name) if isinstance(port, Storage))
     return {p.state: p.branch for p in ports if p.imposes is PowerVariable.THROUGH}
-
-
-def parted(spec: Tables, given: Collection[str]) -> Iterator[str]:
-    """Yield what it means that, of states of one rate, some alone are given a start."""
-    alike: dict[object, list[str]] = {}
-    for element in spec.elements:
-        for state, branch in motions(spec, element).items():
-            alike.setdefault(branch, []).append(state)
-    for group in alike.values():
-        first = [state for state in group if state in given]
-        others = [state for state in group if state not in given]
-        if first and others:
-            kept = listing(f"{first[0]} - {state}" for state in others)
-            yield (
-                f"{listing(group)} move at one rate; given only {listing(first)}, they keep "
-                f"{kept} as at the start: give {listing(others)}, too, if all are one displacement"
-            )
 
 
 def _storage(spec: Tables, parts: tuple[str, ...], hot: Mapping[str, str]) -> str:
