@@ -21,6 +21,7 @@ from piezo_sym.run import simulate as run
 from piezo_sym.run.checks import known_keys
 from piezo_sym.run.simulate import stages_of
 from piezo_sym.run.stepper import Stepper as Steps
+from piezo_sym.spec.starts import warn_parted
 
 if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
@@ -41,8 +42,10 @@ def of_spec(
 
     def call(model: Spec, *args: P.args, **given: P.kwargs) -> R:
         known_keys(given, options, run.__name__)
+        module = module_of(model, stages(given))
+        warn_parted(model, module, given.get("initial"))
         try:
-            return run(module_of(model, stages(given)), *args, **given)
+            return run(module, *args, **given)
         except UnknownNameError as error:
             if error.where.endswith(".initial"):
                 _say_joined(error, model)

@@ -129,6 +129,10 @@ class DriftError(PiezoError):
     exit_code: ClassVar[int] = 1
 
 
+class InputWarning(UserWarning):
+    """Not given: an input that drove the run that is continued, or a state of the same rate."""
+
+
 def legible(text: str) -> str:
     """Return a message with every character that does not print escaped, so that it is one line."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)

@@ -165,6 +165,9 @@ class Report:
             what = f"{row.id} is {row.verdict.value}"
             where = f"{self.model}.{row.element}" if row.element else self.model
             remedy = f"mend the law or the {'unit' if row.is_cause else 'domain'}"
+            others = sum(row.verdict is Verdict.REFUTED for row in self.failures) - 1
+            if others > 0:  # rows that rest on these are OPEN
+                remedy += f"; {others} more REFUTED: see `piezo-sym verify SPEC`"
             raise ProofError(f"{what}: {row.why}", where, row.statement, remedy)
 
     def summary(self) -> str:

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.analysis.settling import Rest, followed
-from piezo_sym.errors import RunError
+from piezo_sym.errors import RunError, listing
 from piezo_sym.run.checks import FloatArray, calling, known_keys, number
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
@@ -39,6 +39,7 @@ WHERE = "operating_point"
 #: The step along directions to other states of rest; the least relative change of a temperature per
 #: unit step that is not round-off. The size of an entropy is what changes a temperature by 1e-6.
 STEP, SAME = 1e-2, 1e-9
+MOST_SHOWN = 8  # states, or lanes of one
 
 
 @final
@@ -78,14 +79,23 @@ class OperatingPoint:
     after: float
 
     def __repr__(self) -> str:
-        """Return outputs, temperatures, stability, which rest it is, and what is not determined."""
+        """Return states, outputs, temperatures, stability, which rest it is, and what is open."""
+        states = [f"{name} = {_digits(value)}" for name, value in self.initial.items()]
         shown = {**self.outputs, **{f"T_{body}": T for body, T in self.temperatures.items()}}
         values = ", ".join(f"{name} = {value:.6g}" for name, value in shown.items())
-        free = "".join(f", {name} is not determined" for name in self.undetermined)
+        values = f"{listing(states, MOST_SHOWN)}; {values}"
+        free = f"; history decides: {listing(self.undetermined, MOST_SHOWN)}"
+        free *= bool(self.undetermined)
         way = f"where a run from the initial state rests, settled after {self.after:.3g} s"
         way = "as no run of 'initial' decides, a near one" if isnan(self.after) else way
         which = f", one rest of many: {way}" if self.after else ""
         return f"OperatingPoint({values}, {'stable' if self.stable else 'unstable'}{which}{free})"
+
+
+def _digits(value: LaneValue) -> str:
+    """Return a number with a few digits, or those of the first lanes."""
+    lanes = listing((f"{x:.6g}" for x in np.ravel(value)), MOST_SHOWN)
+    return f"[{lanes}]" if np.ndim(value) else lanes
 
 
 @calling("operating_point")

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from piezo_sym.errors import PiezoError, UsageError, legible
+from piezo_sym.errors import InputWarning, PiezoError, UsageError, legible
 
 STYLES = {"PROVED": "green", "REFUTED": "bold red", "OPEN": "yellow"}
 
@@ -42,7 +42,6 @@ def warnings_as_lines() -> Iterator[None]:
     """
     from piezo_sym.modules import ModuleWarning
     from piezo_sym.run.engine import EngineWarning
-    from piezo_sym.run.inputs import InputWarning
 
     kinds, of_modules = (EngineWarning, InputWarning, ModuleWarning), list[str]()
 

@@ -24,6 +24,8 @@ series = ["base", "wall"]
 [banks.creep.elements]      # each between the ends of its cell, which go by these names
 slow = { kind = "spring", between = ["base", "wall"], stiffness = "k" }
 loss = { kind = "damper", between = ["base", "wall"], force = "d*v", heats = "body" }"""
+#: Names of hysteresis, which elements have as a field or limit.
+HYSTERESIS = frozenset({"dahl", "bouc_wen", "maxwell_slip", "play", "hysteresis", "slip"})
 OPERATORS = (
     ("+ - * /", "as usual", "R*(1 + al*(T - T_0))"),
     ("**", "a power, by a whole number or a small fraction", "d*v**3"),
@@ -58,6 +60,8 @@ def _meant(kind: str) -> str:
     """Return what to write instead of an unknown kind: another element, or a similar name."""
     if kind.replace("_", "") in {"endstop", "contact"}:
         return 'write a spring with force = "k_c*max(q - gap, 0)"'
+    if kind.lower().replace("-", "_") in HYSTERESIS:
+        return "hysteresis is a 'stop', or a 'slip' of a spring or capacitor: piezo-sym kinds stop"
     from piezo_sym.errors import nearest
     from piezo_sym.spec.elements import KINDS
 

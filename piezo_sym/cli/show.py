@@ -57,9 +57,7 @@ def _banks(model: Model) -> Iterator[str]:
 
 def _elements(model: Model, joined: Collection[str]) -> None:
     """Print elements, inputs and parameters, in SI; `joined` are states of joined stores."""
-    from piezo_sym.expressions.tree import names
-    from piezo_sym.spec.flatten import inputs_of
-    from piezo_sym.spec.tables import initial_laws, laws
+    from piezo_sym.spec.tables import unused_inputs, unused_parameters
 
     rows: list[tuple[str, ...]] = []
     for name, element in model.elements.items():
@@ -68,16 +66,15 @@ def _elements(model: Model, joined: Collection[str]) -> None:
         rows.append((name, kind, _where(element), own, _starts(model, name, element, joined)))
     columns = ("name", "kind", "where", "laws and values (SI)", "state at t = 0")
     print_table("Elements", columns, rows)
-    used, rows = inputs_of(model.elements.values()), []
+    unused, rows = unused_inputs(model), []
     for name, entry in model.inputs.items():
-        doc = entry.doc if name in used else f"{entry.doc} (no element uses it)".strip()
+        doc = f"{entry.doc} (no element uses it)".strip() if name in unused else entry.doc
         rows.append((name, entry.dimension.si, f"{entry.si:g}", doc))
     print_table("Inputs", ("name", "unit", "if not given", "what it is"), rows)
-    trees = [*(law.tree for law in laws(model)), *(tree for _, tree in initial_laws(model))]
-    used, rows = {word for tree in trees for word in names(tree)}, []
+    unused, rows = unused_parameters(model), []
     for name, parameter in model.parameters.items():
         values = listing((f"{value:g}" for value in parameter.lanes), 8)
-        doc = parameter.doc if name in used else f"{parameter.doc} (no law uses it)".strip()
+        doc = f"{parameter.doc} (no law uses it)".strip() if name in unused else parameter.doc
         rows.append((name, values, parameter.dimension.si, doc))
     print_table("Parameters", ("name", "value (SI)", "unit", "what it is"), rows)
 

@@ -98,7 +98,6 @@ def simulate(
     units = Units(spec)
     signals = dict(pairs(inputs or (), "--input", units.signal))
     starts = dict(pairs(initial or (), "--initial", units.initial))
-    units.starts(starts)
     span = {"duration": duration, "t0": t0, "times": times, "stop": stop}
     solver = {"rtol": rtol, "step": step, "order": order, "method": method, "outputs": outputs}
     result = _run(
@@ -208,6 +207,9 @@ def keeping(out: Path | None) -> Iterator[None]:
         partial = getattr(stopped, "partial", None)
         for line in () if partial is None else _event_lines(partial):
             typer.echo(line)
+        if out is None and partial is not None and not isinstance(stopped, RunError):
+            reached = f"the run is at t = {float(partial.time[-1]):.6g} s"
+            typer.echo(f"{reached}; --out would keep it until here", err=True)
         if out is not None and partial is not None:
             if not _is_store(out):
                 _write(partial, out)

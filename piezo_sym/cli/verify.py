@@ -84,9 +84,10 @@ def _reports(
 
     started()
     from piezo_sym.build import PROOFS, report_and_files
+    from piezo_sym.expressions.tree import names
     from piezo_sym.spec.load import of_file
     from piezo_sym.spec.source import find, read
-    from piezo_sym.spec.tables import unused_inputs
+    from piezo_sym.spec.tables import conditions, unused_inputs, unused_parameters
 
     reports: dict[str, Report] = {}
     proved: dict[str, tuple[str, str]] = {}
@@ -99,9 +100,12 @@ def _reports(
                 model = of_file(path, text)
                 flat = model.flatten()
                 reports[spec], files = report_and_files(model)
-                for name in unused_inputs(flat):
-                    line = f"{legible(path.name)}: inputs.{name}: {UNUSED}"
-                    typer.echo(f"piezo-sym: {line}", err=True)
+                unused = [f"inputs.{name}: {UNUSED}" for name in unused_inputs(flat)]
+                bounds = {word for c in conditions(flat) for word in names(c.tree)}
+                idle = (name for name in unused_parameters(flat) if name not in bounds)
+                unused += [f"parameters.{name}: no law uses it" for name in idle]
+                for line in unused:
+                    typer.echo(f"piezo-sym: {legible(path.name)}: {line}", err=True)
                 own = text if flat is model else flat.to_toml()
                 proved[spec] = own, files[PROOFS.format(model.name)]
         except ContradictionError:

@@ -7,7 +7,7 @@ SI, or an error that names the option.
 
 import json
 import re
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from inspect import Parameter, signature
 from pathlib import Path
@@ -17,6 +17,7 @@ from piezo_sym.cli.output import about
 from piezo_sym.errors import SpecError, UsageError, listing, nearest, quote
 from piezo_sym.expressions.incomplete import with_a_point
 from piezo_sym.files import path_text
+from piezo_sym.run.checks import known_keys
 
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<numbers>[^()]*)(?P<end>\)?)")
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -183,7 +184,7 @@ class Units:
     Attributes
     ----------
     assumed : a line for each number that was read in SI, although its declared unit is another,
-        for each input that no element uses, and for states that start apart.
+        and for each input that no element uses.
     """
 
     def __init__(self, spec: str) -> None:
@@ -220,6 +221,8 @@ class Units:
         used = re.search(rf"\b{re.escape(name)}\b", json.dumps(users, default=str))
         if name in self._declared and not used:
             self.assumed.append(f"{name}: no element uses this input")
+        if text.startswith("@"):  # or the column of that name would be looked for
+            known_keys({name: text}, self._content.get("inputs") or (), "simulate.inputs")
         return signal(text, where, self._value)
 
     def _value(self, text: str, where: str, place: str) -> float:
@@ -237,21 +240,6 @@ class Units:
 
         hot = {f"T_{body}": "K" for body in bodies(self._flat)}
         return hot | {name: unit_text(d) for name, d in state_dimensions(self._flat).items()}
-
-    def starts(self, given: Collection[str]) -> None:
-        """Say of states that start without others of the same rate what that means."""
-        from piezo_sym.spec.checks.energies import motions
-
-        alike: dict[object, list[str]] = {}
-        for element in self._flat.elements if given else ():
-            for state, branch in motions(self._flat, element).items():
-                alike.setdefault(branch, []).append(state)
-        for states in alike.values():
-            first = next((state for state in states if state in given), "")
-            others = [state for state in states if first and state not in given]
-            kept = ", ".join(f"{first} - {state}" for state in others)
-            line = f"{listing(states)} have one rate, and {first} is given; constant in this run"
-            self.assumed += [f"{line}: {kept}"] * bool(others)
 
     @cached_property
     def _flat(self) -> Any:

@@ -26,10 +26,13 @@ from piezo_sym.expressions.dimensions import (
 )
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import (
+    ZERO,
     Add,
+    Call,
     Cmp,
     Div,
     Expr,
+    If,
     Mul,
     Neg,
     Node,
@@ -135,12 +138,24 @@ def _other_field(fault: Check, model: Model) -> str:
     if not fault.rule.whole or not place.element:
         return ""
     element, own = model.elements[place.element], place.where.rpartition(".")[2]
+    if any(isinstance(node, If) for node in walk(fault.rule.left)):
+        return _as_contact(fault, own)  # a stiffness that jumps is refused, too
     marks = {f: mark for f, mark in element.law_fields() if f in element.row.form.one_of}
     for field, mark in marks.items():
         alike = own in marks and mark.units == marks[own].units
         if alike and parse_unit(mark.unit).dimension == found:
             words, law = field.replace("_", " "), fault.text(fault.rule.left)
             return f'; or is it the {words} itself? then {field} = "{law}" instead of {own}'
+    return ""
+
+
+def _as_contact(fault: Check, own: str) -> str:
+    """Return a hint at k*max(q - g, 0) for `k if q > g else 0`, if its unit fits."""
+    match fault.rule.left:
+        case If(k, Cmp(">" | ">=", q, g), other) if other == ZERO:
+            law = Mul(k, Call("max", (Add((q, Neg(g))), ZERO)))
+            if not faults(replace(fault.place, tree=law).rules(), fault.place.words):
+                return f'; or is it a contact? then {own} = "{fault.text(law)}"'
     return ""
 
 

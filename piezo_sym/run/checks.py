@@ -22,6 +22,8 @@ FloatArray: TypeAlias = NDArray[np.float64]
 BOOLS = frozenset({bool, np.bool_})
 #: Matches the names of functions whose checks of arguments other functions use.
 SHARED = re.compile(r"^(simulate|operating_point|periodic_steady_state)\.")
+#: Arguments in seconds.
+TIMES = frozenset({"duration", "step", "t0"})
 #: The smallest duration, temperature or frequency: fractions of a smaller one underflow.
 LEAST = 1e-100
 #: The most lanes or samples: the results of more fit into no memory.
@@ -42,8 +44,11 @@ def number(value: object, where: str) -> float:
     except (OverflowError, TypeError, ValueError):
         result = nan
     if not isfinite(result):
-        what = f"{quote(value)} is not a finite number"
-        raise UsageError(what, where, "a finite real number")
+        what, expected = f"{quote(value)} is not a finite number", "a finite real number"
+        if isinstance(value, str):
+            unit = "of seconds" if where.rpartition(".")[2] in TIMES else "in SI"
+            expected = f"a number {unit}, such as 0.005"
+        raise UsageError(what, where, expected)
     return result
 
 

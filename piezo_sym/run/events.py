@@ -36,6 +36,8 @@ EVENT = "times of event"
 KNOWN = "a state, input, y_<port>, T_<body> or parameter"
 #: A quantity of an element, as `spring.effort`: no name of the language of laws.
 QUANTITY = re.compile(r"\b([A-Za-z_]\w*)\.([A-Za-z_]\w*)")
+#: A number with a unit, which the language does not have either.
+WITH_UNIT = re.compile(r"(?<![\w.])(\d+\.?\d*(?:[eE][-+]?\d+)?) ?([^\W\d_]+(?:/[^\W\d_]+)*)")
 #: Samples inside a bracket in one pass: around the zero of the chord, at these fractions of the
 #: bracket to either side; or evenly, where that did not narrow it by LITTLE. The most passes.
 AROUND = 2.0 ** np.array([-4.0, -12.0, -24.0, -40.0])
@@ -127,11 +129,24 @@ def _parsed(
     except PiezoError as error:
         said = [error.what, error.expected, error.remedy]
         with suppress(PiezoError):
+            said[2] = _in_si(text, where) or said[2]
+        with suppress(PiezoError):
             said[2] = f"write '{form.format(spell(_margin_of_several(plain, where)))}'"
         for name, own in spelled.items():
             said = [part.replace(name, own) for part in said]
         what, expected, remedy = said
         raise UsageError(what, where, expected, remedy) from error
+
+
+def _in_si(text: str, where: str) -> str:
+    """Return how to write the first number with a unit, as in q > 1um, or ''."""
+    found = WITH_UNIT.search(text)
+    if found is None:
+        return ""
+    from piezo_sym.expressions.units import parse_unit, to_si
+
+    value = to_si(float(found[1]), parse_unit(found[2], where))
+    return f"write numbers in SI: {value:g} for {found[0]}"
 
 
 def _check_names(tree: Expr, words: Sequence[str], where: str) -> Expr:

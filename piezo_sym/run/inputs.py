@@ -16,7 +16,7 @@ from typing import Any, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from piezo_sym.errors import UsageError, quote
+from piezo_sym.errors import InputWarning, UsageError, quote
 from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
 from piezo_sym.run.functions import InputFunction
 from piezo_sym.run.module import GeneratedModule, names_elsewhere
@@ -24,11 +24,6 @@ from piezo_sym.run.samples import Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal
 
 InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
-
-
-class InputWarning(UserWarning):
-    """An input drove the run that is continued, but is not given now: it has its default again."""
-
 
 CLOSE = 1e-12  # fraction of the end time: breaks closer than this are merged
 LEAST_JUMP = 1e-6  # of an input's size nearby: smaller differences are round-off of a corner

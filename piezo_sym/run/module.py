@@ -5,7 +5,7 @@ every name of the interface; the rows of each record.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import accumulate, pairwise
 from typing import Any, Protocol, TypeVar
 
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from piezo_sym.errors import UsageError, listing, quote
-from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.checks import FloatArray, known_keys
 
 
 class Record(Protocol):
@@ -112,6 +112,15 @@ def by_name(records: Sequence[Record], parameters: Any, x: FloatArray) -> dict[s
     """Return the rows of x (n,) by record: a number, for a bank one per lane."""
     slices = zip(records, rows(records, parameters), strict=True)
     return {r.name: x[row] if r.bank else float(x[row.start]) for r, row in slices}
+
+
+def in_order(given: Mapping[str, Any], names: Sequence[str], where: str) -> list[Any]:
+    """Return values by name as a list; raise `UsageError` if a name is unknown or left out."""
+    values = known_keys(given, names, where)
+    if missing := [name for name in names if name not in values]:
+        expected = f"a number for each of {listing(names)}"
+        raise UsageError(f"there is no {listing(map(quote, missing))}", where, expected)
+    return [values[name] for name in names]
 
 
 def row_count(records: Sequence[Record], parameters: Any) -> int:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from piezo_sym.errors import FileError, SpecError, UsageError, listing, nearest, quote
+from piezo_sym.files import near_file
 from piezo_sym.spec.names import NAME
 from piezo_sym.spec.syntax import remedy_at
 
@@ -103,7 +104,8 @@ def read(path: Path) -> str:
             raw = file.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "not a path"
-        raise FileError(f"cannot be read ({reason})", where, remedy="check the path") from error
+        remedy = near_file(path) if isinstance(error, FileNotFoundError) else "check the path"
+        raise FileError(f"cannot be read ({reason})", where, remedy=remedy) from error
     if len(raw) > MAX_BYTES:
         remedy = "a bank needs one element, not one per lane"
         raise FileError("is too large", where, f"at most {MAX_BYTES} bytes", remedy)

@@ -168,6 +168,13 @@ def unused_inputs(spec: Tables) -> list[str]:
     return [name for name in spec.inputs if name not in used]
 
 
+def unused_parameters(spec: Tables) -> list[str]:
+    """Return the parameters that no law or initial value uses; conditions on them may."""
+    trees = [*(law.tree for law in laws(spec)), *(tree for _, tree in initial_laws(spec))]
+    used = {word for tree in trees for word in names(tree)}
+    return [name for name in spec.parameters if name not in used]
+
+
 def without_default(spec: Tables, words: Iterable[str]) -> str:
     """Return what to do about the first input among names that is 0 where none is given, or ''."""
     for word in words:

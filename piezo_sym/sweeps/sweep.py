@@ -31,6 +31,7 @@ from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.simulate import simulate
+from piezo_sym.spec.starts import warn_parted
 from piezo_sym.sweeps.frame import Memory, Results, frame_of
 from piezo_sym.sweeps.plan import Plan, Reduction, read_plan
 from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
@@ -128,6 +129,8 @@ def sweep(
     module: Any = module_of(model)
     runs = (inputs, duration, rtol, step, order, parameters, initial, method, times)
     plan = read_plan(module, over, runs, reduce, reduce_by)
+    swept = (target.name for _, target in plan.swept() if target.kind == "initial")
+    warn_parted(model, module, {**plan.initial, **dict.fromkeys(swept)})
     plan, sink = sink_of(plan, module, store, count)
     with ExitStack() as stack:
         if executor is None:

@@ -1,5 +1,6 @@
 """Operating points against closed forms, and what is said where there is none."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,10 @@ def test_the_actuator_rests_where_its_forces_balance() -> None:
     assert list(found.outputs) == ["y_load", "y_supply", "y_ambient"]
     assert found.stable
     assert found.undetermined == ("phi[1]", "phi[2]")  # they circulate within the dead zones
-    assert repr(found).endswith("phi[1] is not determined, phi[2] is not determined)")
+    shown = repr(found)
+    assert shown.startswith(f"OperatingPoint(q = {q:.6g}, p = ")
+    assert re.search(r", phi = \[\S+, \S+\], S = \S+; y_load = ", shown)
+    assert shown.endswith("; history decides: phi[1], phi[2])")
     assert np.abs(found.initial["phi"]).max() < 1e-15
 
 
@@ -159,7 +163,9 @@ def test_springs_in_parallel_keep_their_difference(pressure: float, start: float
     The slowest motion, a minute, is 10 million times as slow as the fastest.
     """
     A, k, k_e, gap = 80e-4, 5e3, 2e8, 50e-3
-    found = operating_point(parse(PRESS), inputs={"p_s": pressure}, initial={"x_e": start})
+    found = operating_point(
+        parse(PRESS), inputs={"p_s": pressure}, initial={"x_e": start, "x": 0.0}
+    )
     free, touching = A * pressure / k, (A * pressure + k_e * (gap - start)) / (k + k_e)
     x = free if free + start < gap else touching
     assert found.initial["x"] == pytest.approx(x, rel=1e-12)

@@ -101,13 +101,20 @@ SHORT = ["simulate", "oscillator", "--duration", "1"]
     ("words", "advice"),
     [
         (["kinds", "end_stop"], 'write a spring with force = "k_c*max(q - gap, 0)"'),
+        (["kinds", "dahl"], "hysteresis is a 'stop', or a 'slip' of a spring or capacitor: piezo"),
+        (["kinds", "Bouc-Wen"], "hysteresis is a 'stop', or a 'slip' of a spring or capacitor"),
+        (["verify", "mene.toml"], "cannot be read (No such file or directory); did you mean 'mine"),
         (["simulate", "oscillator"], "see `piezo-sym simulate --help`"),
         (["simulate", "mine", "--duration", "1"], "to use the file mine.toml, write its ending"),
         ([*SHORT, "--continue", "nofile.nc"], "there is no such file or store; check the path"),
         ([*SHORT, "-i", "F=@absent_table.csv"], "No such file or directory; check the path"),
         ([*SHORT, "-i", "F=@drve.csv"], "did you mean 'drive.csv'?"),
+        ([*SHORT, "-i", "f=@two.csv"], "simulate.inputs: unknown name 'f'; did you mean 'F'?"),
         ([*SHORT, "--event", "k=q"], "the run has a quantity of that name"),
         ([*SHORT, "--event", "hit=q>0.005"], "write 'q - 0.005'"),
+        ([*SHORT, "--event", "hit=q - 2.5e1um"], "write numbers in SI: 2.5e-05 for 2.5e1um"),
+        ([*SHORT, "--stop", "q > 1um"], "write numbers in SI: 1e-06 for 1um"),
+        ([*SHORT, "--stop", "q > 1 and v > 0"], "write 'min(q - 1, v) > 0'"),
         ([*SHORT, "--step", "1e-12"], "simulate.step: 1e-12 s is too short a step"),
         (
             ["simulate", "stack_maxwell", "--duration", "1", "--initial", "z_1=1"],
@@ -118,6 +125,7 @@ SHORT = ["simulate", "oscillator", "--duration", "1"]
 def test_a_command_line(refused, spec_file, tmp_path, monkeypatch, words, advice):
     spec_file()
     (tmp_path / "drive.csv").touch()
+    (tmp_path / "two.csv").write_text("t,F,v\n0,1,2\n1,1,2\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     assert advice in refused(*words)
 
@@ -176,6 +184,14 @@ def test_a_wrong_argument_is_one_of_what_was_called(call, place):
         (lambda: simulate("oscillator", input={}), "simulate: unknown name 'input'; did you mean"),
         (lambda: Stepper("oscillator", setp=1), "Stepper: unknown name 'setp'; did you mean"),
         (lambda: operating_point("oscillator", T=300), "operating_point: unknown name 'T'"),
+        (
+            lambda: simulate("oscillator", duration="5ms"),
+            "simulate.duration: '5ms' is not a finite number; expected a number of seconds, such",
+        ),
+        (
+            lambda: simulate("oscillator", duration=1, parameters={"d": "2"}),
+            "simulate.parameters.d: '2' is not a finite number; expected a number in SI, such as",
+        ),
     ],
 )
 def test_an_option_that_is_none(call, message):

@@ -131,6 +131,17 @@ def test_a_ratio_of_another_unit_is_said_before_what_follows_from_it(call, tmp_p
         assert f"gyrator.k: units is REFUTED: elements.k.{field}: {said}; expected" in answer.err
 
 
+def test_a_parameter_without_effect_is_a_line(call, spec_file):
+    unused = 'F_2 = { value = 1.0, unit = "N" }\nV_m = { value = 1e6, unit = "V" }'
+    spec = spec_file("[parameters]", f"[parameters]\n{unused}")
+    text = spec.read_text(encoding="utf-8").replace('"d >= 0"', '"d >= 0", "V_in < V_m"')
+    spec.write_text(text, encoding="utf-8")
+    answer = call("verify", spec, "--json")  # V_m bounds an input
+    said = "piezo-sym: mine.toml: parameters.F_2: no law uses it\n"
+    assert (answer.code, answer.err) == (0, said)
+    assert "F_2" not in answer.out
+
+
 def test_an_input_without_effect_is_a_line(call, spec_file):
     spec = spec_file("[inputs]", '[inputs]\nV_3 = { unit = "kV" }\nS_0 = { unit = "J/K" }')
     text = spec.read_text(encoding="utf-8").replace("c_0*log(T_e/T_0)", "S_0 + c_0*log(T_e/T_0)")

@@ -161,6 +161,18 @@ def test_a_force_in_the_field_of_a_stiffness_is_told_the_field_that_is_meant():
     ]
 
 
+@pytest.mark.parametrize(
+    ("law", "said"),
+    [
+        ("k if q > q_l else 0", '; or is it a contact? then force = "k*max(q - q_l, 0)"'),
+        ("k if q > q_l else 2*k", ""),
+    ],
+)
+def test_a_stiffness_that_jumps_is_not_offered_for_a_force(law, said):
+    (found,) = reasons(('stiffness = "k"\nrest = "q_l"', f'force = "{law}"'))
+    assert found.endswith(f"would fit{said}")
+
+
 def test_a_wrong_reference_temperature_is_the_one_culprit_everywhere():
     found = reasons(('value = 296.15, unit = "K"', 'value = 296.15, unit = "m"'))
     assert len(found) == 6

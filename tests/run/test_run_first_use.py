@@ -14,8 +14,7 @@ from piezo_sym import (
     sweep,
 )
 from piezo_sym.cli import run
-from piezo_sym.errors import PiezoError, RunError, UsageError
-from piezo_sym.run.inputs import InputWarning
+from piezo_sym.errors import InputWarning, PiezoError, RunError, UsageError
 from piezo_sym.spec.load import parse
 from piezo_sym.spec.source import find
 
@@ -134,3 +133,21 @@ def test_other_formulas_are_told_signals_and_tables(capsys):
     assert "is a formula; expected sine(amplitude" in capsys.readouterr().err
     with pytest.raises(PiezoError, match=r"a signal, such as sine\(100.0, 50.0\)"):
         simulate(load("piezo_stack"), duration=H, inputs={"V_in": "50*sin(t)"})
+
+
+def test_a_start_apart_from_states_of_the_same_rate_is_warned_of_once():
+    guide = 'kind = "spring"\nbetween = ["tip", "wall"]\nstiffness = "k"\nstate = "x"'
+    text = TEXT.replace('= "piezo_stack"', '= "guided"')
+    guided = parse(text.replace("[elements.load]", f"[elements.guide]\n{guide}\n[elements.load]"))
+    said = "^q, x move at one rate; given only x, they keep x - q as at the start: give q, too"
+    calls = {
+        simulate: {"duration": H, "initial": {"x": 1e-6}},
+        Stepper: {"step": H, "initial": {"x": 1e-6}},
+        sweep: {"duration": H, "over": {"initial.x": [1e-6, 2e-6]}},
+    }
+    for function, given in calls.items():
+        with pytest.warns(InputWarning, match=said) as found:
+            function(guided, **given)
+        assert [warning.filename for warning in found] == [__file__]
+    simulate(guided, duration=H, initial={"x": 1e-6, "q": 1e-6})
+    simulate(guided, duration=H, initial={"Q_C": 0.0})

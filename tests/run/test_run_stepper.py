@@ -83,9 +83,22 @@ def test_what_is_no_number_is_refused_before_a_delay(wrong):
         late.step([0.0, wrong, 298.15])
     with pytest.raises(UsageError, match="a list, in this order, of one number each for F_ext"):
         late.step(np.array([[0.0], [50.0], [298.15]]))
-    pair = Stepper("piezo_stack", step=H, parameters=[{}, {}])
-    with pytest.raises(UsageError, match="a list, in this order, of one number each for F_ext"):
-        pair.step({"F_ext": 0.0, "V_in": 1.0, "T_e": 298.15})
+
+
+@pytest.mark.parametrize("given", [{}, {"delay": 1}, {"parameters": [{}, {}]}])
+def test_inputs_are_taken_by_name(given):
+    actuator, other = (Stepper("piezo_stack", step=H, **given) for _ in range(2))
+    for _ in range(2):
+        y = actuator.step({"T_e": 298.15, "V_in": 50.0, "F_ext": 0.0})
+        assert np.array_equal(y, other.step([0.0, 50.0, 298.15]))
+    before = held(actuator)
+    with pytest.raises(UsageError, match=r"Stepper.step: there is no 'F_ext', 'T_e'; expected a"):
+        actuator.step({"V_in": 50.0})
+    with pytest.raises(UsageError, match=r"unknown name 'V_i'; did you mean 'V_in'\?"):
+        actuator.step({"T_e": 298.15, "V_i": 50.0, "F_ext": 0.0})
+    with pytest.raises(UsageError, match=r"step: input 'V_in': 'a' is not a finite number"):
+        actuator.step({"T_e": 298.15, "V_in": "a", "F_ext": 0.0})
+    assert held(actuator) == before
 
 
 @pytest.mark.parametrize("u", [[0.0, 50.0], [0.0, 50.0, 298.15, 1.0], "abc", 50.0, [50.0]])
@@ -268,5 +281,5 @@ def test_help_shows_the_methods_and_what_they_take():
     said = pydoc.plain(pydoc.render_doc(Stepper))
     assert "-> piezo_sym.run.stepper.Stepper" in said
     assert "ring from step to step after a jump, at order 2," in " ".join(said.split())
-    for words in ("    step(u) : ", "    reset(x=None) : ", "<bank>_count", "[d[name] for name in"):
+    for words in ("    step(u) : ", "    reset(x=None) : ", "<bank>_count", "or a dict"):
         assert words in said
