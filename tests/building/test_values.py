@@ -123,7 +123,7 @@ def test_an_edit_of_a_value_beside_a_stop_derives_nothing(tmp_path):
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
     ).stdout
     assert said == "0.006 set()\n"
-    path.write_text(RUBBED.replace('k   = { value = 2.0', 'k   = { value = -2.0'))
+    path.write_text(RUBBED.replace("k   = { value = 2.0", "k   = { value = -2.0"))
     with pytest.raises(SpecError, match="outside the domain"):
         module_of(path)
 

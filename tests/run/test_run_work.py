@@ -132,7 +132,7 @@ PULL_IN = load(Path(__file__).with_name("pull_in.toml"))
 
 @pytest.mark.parametrize("voltage", [20.0, 60.0])
 def test_a_mode_that_rings_far_below_the_tolerance_does_not_hold_a_run_up(voltage):
-    """Its momentum is off by 1e-6 of its scale, and rates at the ends of steps tell of that alone."""
+    """Its momentum is off by 1e-6 of its scale; rates at the ends of steps tell of that alone."""
     options = {"inputs": {"V_in": voltage}, "duration": 2e-3, "times": 21}
     run = simulate(PULL_IN, rtol=1e-5, **options)
     exact = simulate(PULL_IN, method="Radau", rtol=1e-10, **options)
