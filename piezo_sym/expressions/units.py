@@ -19,6 +19,7 @@ from flint import fmpz
 from piezo_sym.errors import SpecError, nearest, quote
 from piezo_sym.expressions.dimensions import BASES
 from piezo_sym.expressions.grammar import RefusedError, parse_rule
+from piezo_sym.expressions.si_units import EXACT, PREFIXES
 from piezo_sym.expressions.tree import Div, Expr, Mul, Num, Pow, Sym
 
 #: Names and their powers.
@@ -33,22 +34,6 @@ ASCII = str.maketrans(
     | {"\u00b7": "*", "\u00b2": "**2", "\u00b3": "**3"}
 )
 COMMON = ("m", "kg", "s", "A", "K", "N", "J", "W", "V", "C", "F", "H", "Wb", "ohm", "Hz", "Pa")
-#: Coherent units as powers of kg, m, s, A, K, mol; pint, which knows the others, loads slowly.
-COHERENT = {
-    "1": (), "kg": (1,), "m": (0, 1), "s": (0, 0, 1), "A": (0, 0, 0, 1), "K": (0, 0, 0, 0, 1),
-    "N": (1, 1, -2), "Pa": (1, -1, -2), "J": (1, 2, -2), "W": (1, 2, -3), "Hz": (0, 0, -1),
-    "C": (0, 0, 1, 1), "V": (1, 2, -3, -1), "F": (-1, -2, 4, 2), "ohm": (1, 2, -3, -2),
-    "S": (-1, -2, 3, 2), "Wb": (1, 2, -2, -1), "T": (1, 0, -2, -1), "H": (1, 2, -2, -2),
-    "mol": (0, 0, 0, 0, 0, 1), "rad": (),
-}  # fmt: skip
-#: Units that need no pint: the coherent one of each, its factor to that, and its powers.
-QUICK = {name: (name, Fraction(1), powers) for name, powers in COHERENT.items()} | {
-    "g": ("kg", Fraction(1, 1000), COHERENT["kg"]),
-    "l": ("m**3", Fraction(1, 1000), (0, 3)),
-    "bar": ("Pa", Fraction(100_000), COHERENT["Pa"]),
-}
-#: Prefixes of these, and their powers of ten.
-PREFIXES = {"p": -12, "n": -9, "u": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
 #: The units of specs, by pint's long names; each may have an SI prefix.
 _UNITS = """meter gram second ampere kelvin mole candela hertz newton pascal joule watt coulomb volt
     farad ohm siemens weber tesla henry radian degree turn revolutions_per_minute minute hour day
@@ -207,10 +192,10 @@ def _named(name: str, where: str, value: float | None, alone: bool = True, text:
 
     One with an offset is a temperature if it stands `alone`, else a difference, as in W/degC.
     """
-    prefixed = name[:1] in PREFIXES and name[1:] in QUICK.keys() - {"1", "kg"}
-    if name in QUICK or prefixed:
-        si, factor, powers = QUICK[name if name in QUICK else name[1:]]
-        scale = Fraction(1) if name in QUICK else Fraction(10) ** PREFIXES[name[0]]
+    prefixed = name[:1] in PREFIXES and name[1:] in EXACT.keys() - {"1", "kg"}
+    if name in EXACT or prefixed:
+        si, factor, powers = EXACT[name if name in EXACT else name[1:]]
+        scale = Fraction(1) if name in EXACT else Fraction(10) ** PREFIXES[name[0]]
         powers = (*powers, *(0,) * len(BASES))[: len(BASES)]
         return Unit(name, si, scale * factor, tuple(map(Fraction, powers)))
     if _root(name) not in UNITS:
