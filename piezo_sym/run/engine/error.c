@@ -132,36 +132,31 @@ static void MODEL(all_misfits)(const MODEL(batch) *b, real gamma, real ends)
 #endif
 }
 
-/*
- * The misfits, once and twice filtered by the equations. Where a state rings, the rates at the ends of the step
- * tell of that alone, and those of the stages count: there it has its equilibrium.
- */
-static void MODEL(filter_misfits)(MODEL(batch) *b, real gamma, mask where, real *once, real *twice)
+/* The misfits, once and twice filtered by the equations; `ends` as in misfits. */
+static void MODEL(filter_misfits)(const MODEL(batch) *b, real gamma, real ends, real *once, real *twice)
 {
     const MODEL(block) *m = &b->m;
-    real ends = wide(1.0);
-    for (int again = 0; again < 2; ++again) {
-        mask rings = nowhere;
-        MODEL(all_misfits)(b, gamma, ends);
-        memcpy(once, b->some_rate, (size_t)m->n * sizeof(real));
-        MODEL(solve_real)(m, gamma, m->slope, m->real_factor, once);
-        memcpy(twice, once, (size_t)m->n * sizeof(real));
-        MODEL(solve_real)(m, gamma, m->slope, m->real_factor, twice);
-        for (long k = 0; k < m->n; ++k) {
-            const real misfit = size_of(b->some_rate[k]), error = size_of(once[k]);
-            const mask so = where & (misfit > RINGS * error) & (error > RINGS * size_of(twice[k]));
-            if (!again)
-                b->rings[k] = chosen(where, chosen(so, wide(1.0), zero), b->rings[k]);
-            rings |= so;
-        }
-        if (STAGES < 3 || again)
-            break;
-        b->ringing = (b->ringing & none_of(where)) | rings;
-        if (!any(rings))
-            break;
-        ends = chosen(rings, zero, wide(1.0));
-    }
+    MODEL(all_misfits)(b, gamma, ends);
+    memcpy(once, b->some_rate, (size_t)m->n * sizeof(real));
+    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, once);
+    memcpy(twice, once, (size_t)m->n * sizeof(real));
+    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, twice);
 }
+
+#if STAGES > 2
+/* Learn in some lanes which states ring, by their filtered misfits. */
+static void MODEL(learn_ringing)(MODEL(batch) *b, const real *once, const real *twice, mask where)
+{
+    mask some = nowhere;
+    for (long k = 0; k < b->m.n; ++k) {
+        const real misfit = size_of(b->some_rate[k]), error = size_of(once[k]);
+        const mask rings = where & (misfit > RINGS * error) & (error > RINGS * size_of(twice[k]));
+        b->rings[k] = chosen(where, chosen(rings, wide(1.0), zero), b->rings[k]);
+        some |= rings;
+    }
+    b->ringing = (b->ringing & none_of(where)) | some;
+}
+#endif
 
 /*
  * The error of each lane's step, in tolerances of each state's scale; lanes in `where` learn which states ring.
@@ -174,7 +169,13 @@ static real MODEL(error)(MODEL(batch) *b, real h, mask where)
     const MODEL(block) *m = &b->m;
     const real gamma = h * filter;
     real *const once = m->gap, *const twice = m->prior; /* no longer needed by Newton's method */
-    MODEL(filter_misfits)(b, gamma, where, once, twice);
+    MODEL(filter_misfits)(b, gamma, wide(1.0), once, twice);
+#if STAGES > 2 /* rates at the ends tell of what rings alone; at the stages it is in equilibrium */
+    MODEL(learn_ringing)(b, once, twice, where);
+    const mask rings = where & b->ringing;
+    if (any(rings))
+        MODEL(filter_misfits)(b, gamma, chosen(rings, zero, wide(1.0)), once, twice);
+#endif
     const real per_tolerance = 1.0 / wide(b->tolerance);
     real pulled = zero, slow = 1e-300 + zero, worst = zero;
     for (long k = 0; k < m->n; ++k) {

@@ -19,6 +19,7 @@ typedef struct {
     double part[REAL_WIDTH];
 } MODEL(dispatch);
 
+/* Plan the next step of all lanes that have a run. */
 static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
 {
     MODEL(dispatch) t = {.begin = zero, .h = zero, .ahead = zero, .ratio = zero};
