@@ -5,14 +5,14 @@ rate are left out.  The spec is read only where that may be.
 """
 
 import warnings
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from piezo_sym.errors import InputWarning, listing
 
 if TYPE_CHECKING:
-    from piezo_sym.spec.fields import Tables
     from piezo_sym.spec.model import Model
 
 
@@ -22,22 +22,27 @@ def warn_parted(model: "str | Path | Model", module: Any, initial: object) -> No
     units = {record.unit for record in module.STATES if record.name in given}
     if all(r.name in given or r.unit not in units for r in module.STATES):
         return
-    from piezo_sym.spec.load import load
-
-    spec = load(model) if isinstance(model, str | Path) else model
-    for text in _parted(spec.flatten(), given):
+    for text in _parted(_groups(model, module.SPEC_SHA256), given):
         warnings.warn(text, InputWarning, stacklevel=3)
 
 
-def _parted(spec: "Tables", given: Collection[str]) -> Iterator[str]:
-    """Yield what it means that, of states of one rate, some alone are given a start."""
+@lru_cache(maxsize=64)
+def _groups(model: "str | Path | Model", _sha256: str) -> tuple[list[str], ...]:
+    """Return the states of each rate in a spec of this hash; runs in a loop read it once."""
     from piezo_sym.spec.checks.energies import motions
+    from piezo_sym.spec.load import load
 
+    spec = (load(model) if isinstance(model, str | Path) else model).flatten()
     alike: dict[object, list[str]] = {}
     for element in spec.elements:
         for state, branch in motions(spec, element).items():
             alike.setdefault(branch, []).append(state)
-    for group in alike.values():
+    return tuple(alike.values())
+
+
+def _parted(groups: Iterable[list[str]], given: Collection[str]) -> Iterator[str]:
+    """Yield what it means that, of states of one rate, some alone are given a start."""
+    for group in groups:
         first = [state for state in group if state in given]
         others = [state for state in group if state not in given]
         if first and others:
