@@ -4,8 +4,11 @@
  */
 
 enum { ROUGH_ITERATIONS = 8 };
-/* Accuracy of a survey's steps, and the shortest of them, as a fraction of the longest. */
-#define ROUGH 1e-3
+/*
+ * The relative change after which Newton's method is done in a survey, as the next would be its square; and the
+ * shortest step of a survey, as a fraction of the longest.
+ */
+#define ROUGH 3e-2
 #define SHORTEST 1e-6
 /* The most steps of a survey; later magnitudes count when the run itself reaches them. */
 enum { MOST_SURVEYED = 10000 };
