@@ -11,8 +11,12 @@ typedef struct {
 
 /* Accuracy of rates that only serve to locate a switch, as a fraction of the tolerance. */
 #define SKETCH 0.01
-/* Accuracy of rates whose residuals become heat, as a fraction of the tolerance. */
-#define RESIDUAL 3e-2
+/*
+ * Accuracy of rates whose residuals become heat, as a fraction of the tolerance; where states may be round-off, as at
+ * rest, nothing else would move them.
+ */
+#define RESIDUAL 0.1
+#define RESIDUAL_AT_REST 0.03
 /* With at least this many switches it may be better to step over kinks. */
 enum { MANY = 8 };
 
@@ -112,7 +116,6 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
     b->m.enough = SKETCH * task->tolerance / NOISE;
 #if defined(COSTATES)
     b->m.loose = b->m.early = nowhere;
-    b->m.allowed = RESIDUAL * task->tolerance / NOISE;
 #endif /* COSTATES */
     b->over_kinks = task->over_kinks && !b->either;
     b->m.over = nowhere;
@@ -122,6 +125,7 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
 static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
 {
     MODEL(block) *m = &b->m;
+    int rests = 0;
     MODEL(give)(&m->p, run->p, lane);
     m->own = run->p;
 #if defined(LANES)
@@ -131,7 +135,11 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
         LANE(m->x, k, lane) = run->x[k];
         LANE(m->largest, k, lane) = run->largest[k];
         LANE(m->noise, k, lane) = run->noise[k];
+        rests |= run->noise[k] > 0.0;
     }
+#if defined(COSTATES)
+    LANE(&m->allowed, 0, lane) = (rests ? RESIDUAL_AT_REST : RESIDUAL) * b->tolerance / NOISE;
+#endif /* COSTATES */
     for (long k = 0; k < m->booked; ++k) {
         LANE(b->sums, k, lane) = run->ledger[k];
         LANE(b->lost, k, lane) = run->ledger[m->booked + k];

@@ -84,7 +84,7 @@ typedef struct {
     size_t kept_size;
     real taken, scale;         /* entropy that the first body takes; factor on what processes book */
     mask loose, early;         /* lanes that may stop short of round-off; lanes that did */
-    double allowed;            /* in units of noise: how far from their root they may be */
+    real allowed;              /* in units of noise: how far from their root they may be */
 #endif /* COSTATES */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes that step over kinks: each stage chooses its branches */

@@ -56,7 +56,7 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
 #if defined(COSTATES)
     b->m.loose = t.loose;
     if (b->tape) /* its steps are taken again to the bit */
-        b->m.allowed = 0.0;
+        b->m.allowed = zero;
 #endif /* COSTATES */
     for (long i = 0; i < STAGES; ++i)
         MODEL(inputs_at)(b, t.busy, t.begin + stage_at[i] * t.h, b->m.u + i * b->m.inputs);
