@@ -60,6 +60,8 @@ typedef struct {
     real lam;
 } amplified_stack_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -183,8 +185,6 @@ static void amplified_stack_stage(const real *restrict x_,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void amplified_stack_costates(const real *restrict x_,
                                      const real *restrict g_,
@@ -216,10 +216,6 @@ static void amplified_stack_costates(const real *restrict x_,
     out[4] = F_end_stop;
     out[5] = T;
 }
-enum { amplified_stack_bodies = 1 };
-static const int amplified_stack_body[] = {
-    5,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -300,6 +296,8 @@ static void amplified_stack_slopes(const real *restrict x_,
     out[13] = (-(heat_leads + heat_losses + heat_bumper)/power_2_of(T) - lam*T_e/power_2_of(T))*dT_dS;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void amplified_stack_sizes(const amplified_stack_reals *p_, long *out)
 {
@@ -351,6 +349,13 @@ static void amplified_stack_give(amplified_stack_reals *to, const amplified_stac
 
 /* Integrands have kinks: see run/engine. */
 #define BENDS
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { amplified_stack_bodies = 1 };
+static const int amplified_stack_body[] = {
+    5,
+};
+#endif /* of what tells of co-states */
 enum {
     amplified_stack_limits = 0, /* margins of a stage */
     amplified_stack_reads = 2, /* states that integrands read */

@@ -57,6 +57,8 @@ typedef struct {
     real lam;
 } bimorph_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -158,8 +160,6 @@ static void bimorph_stage(const real *restrict x_,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void bimorph_costates(const real *restrict x_,
                              const real *restrict g,
@@ -190,10 +190,6 @@ static void bimorph_costates(const real *restrict x_,
     out[3] = V_Q_u;
     out[4] = V_Q_l;
 }
-enum { bimorph_bodies = 1 };
-static const int bimorph_body[] = {
-    2,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -283,6 +279,8 @@ static void bimorph_slopes(const real *restrict x_,
     out[14] = di_output_dQ_l + di_input_dQ_l;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void bimorph_sizes(const bimorph_reals *p_, long *out)
 {
@@ -327,6 +325,13 @@ static void bimorph_give(bimorph_reals *to, const bimorph_parameters *from, int 
     OF(to->lam, lane) = from->lam;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { bimorph_bodies = 1 };
+static const int bimorph_body[] = {
+    2,
+};
+#endif /* of what tells of co-states */
 enum {
     bimorph_limits = 0, /* margins of a stage */
     bimorph_reads = 1, /* states that integrands read */

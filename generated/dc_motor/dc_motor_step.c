@@ -56,6 +56,8 @@ typedef struct {
     real T_0;
 } dc_motor_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -136,8 +138,6 @@ static void dc_motor_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void dc_motor_costates(const real *restrict x,
                               const real *restrict g,
@@ -161,10 +161,6 @@ static void dc_motor_costates(const real *restrict x,
     out[1] = omega_rotor;
     out[2] = T;
 }
-enum { dc_motor_bodies = 1 };
-static const int dc_motor_body[] = {
-    2,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -226,6 +222,8 @@ static void dc_motor_slopes(const real *restrict x,
         + (-(heat_winding + heat_bearing)/power_2_of(T) - lam*T_e/power_2_of(T))*dT_minus_T_0_dS;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void dc_motor_sizes(const dc_motor_reals *p, long *out)
 {
@@ -267,6 +265,13 @@ static void dc_motor_give(dc_motor_reals *to, const dc_motor_parameters *from, i
     OF(to->T_0, lane) = from->T_0;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { dc_motor_bodies = 1 };
+static const int dc_motor_body[] = {
+    2,
+};
+#endif /* of what tells of co-states */
 enum {
     dc_motor_limits = 1, /* margins of a stage */
     dc_motor_reads = 1, /* states that integrands read */

@@ -56,6 +56,8 @@ typedef struct {
     real T_0;
 } electromagnet_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -139,8 +141,6 @@ static void electromagnet_stage(const real *restrict x_,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void electromagnet_costates(const real *restrict x_,
                                    const real *restrict g_,
@@ -164,10 +164,6 @@ static void electromagnet_costates(const real *restrict x_,
     out[3] = i_phi;
     out[4] = F_x;
 }
-enum { electromagnet_bodies = 1 };
-static const int electromagnet_body[] = {
-    2,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -231,6 +227,8 @@ static void electromagnet_slopes(const real *restrict x_,
     out[10] = 1.0/m;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void electromagnet_sizes(const electromagnet_reals *p_, long *out)
 {
@@ -274,6 +272,13 @@ static void electromagnet_give(electromagnet_reals *to, const electromagnet_para
     OF(to->T_0, lane) = from->T_0;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { electromagnet_bodies = 1 };
+static const int electromagnet_body[] = {
+    2,
+};
+#endif /* of what tells of co-states */
 enum {
     electromagnet_limits = 1, /* margins of a stage */
     electromagnet_reads = 3, /* states that integrands read */

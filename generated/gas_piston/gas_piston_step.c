@@ -55,6 +55,8 @@ typedef struct {
     real lam;
 } gas_piston_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -126,8 +128,6 @@ static void gas_piston_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void gas_piston_costates(const real *restrict x,
                                 const real *restrict g,
@@ -145,10 +145,6 @@ static void gas_piston_costates(const real *restrict x,
     out[1] = F_q;
     out[2] = T;
 }
-enum { gas_piston_bodies = 1 };
-static const int gas_piston_body[] = {
-    2,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -198,6 +194,8 @@ static void gas_piston_slopes(const real *restrict x,
     out[6] = (-heat_friction/power_2_of(T) - lam*T_e/power_2_of(T))*dT_dS;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void gas_piston_sizes(const gas_piston_reals *p_, long *out)
 {
@@ -237,6 +235,13 @@ static void gas_piston_give(gas_piston_reals *to, const gas_piston_parameters *f
     OF(to->lam, lane) = from->lam;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { gas_piston_bodies = 1 };
+static const int gas_piston_body[] = {
+    2,
+};
+#endif /* of what tells of co-states */
 enum {
     gas_piston_limits = 1, /* margins of a stage */
     gas_piston_reads = 2, /* states that integrands read */

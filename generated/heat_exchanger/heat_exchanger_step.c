@@ -51,6 +51,8 @@ typedef struct {
     real T_2;
 } heat_exchanger_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -143,6 +145,8 @@ static void heat_exchanger_slopes(const real *restrict x,
     out[2] = dheat_contact_dS_hot/T_cold;
     out[3] = dheat_contact_dS_cold/T_cold - heat_contact/power_2_of(T_cold)*dT_cold_dS_cold;
 }
+
+#endif /* of the functions of laws */
 
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void heat_exchanger_sizes(const heat_exchanger_reals *p, long *out)

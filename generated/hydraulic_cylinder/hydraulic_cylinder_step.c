@@ -60,6 +60,8 @@ typedef struct {
     real T_0;
 } hydraulic_cylinder_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -159,8 +161,6 @@ static void hydraulic_cylinder_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void hydraulic_cylinder_costates(const real *restrict x,
                                         const real *restrict g,
@@ -182,10 +182,6 @@ static void hydraulic_cylinder_costates(const real *restrict x,
     out[2] = F_stop;
     out[3] = T;
 }
-enum { hydraulic_cylinder_bodies = 1 };
-static const int hydraulic_cylinder_body[] = {
-    3,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -250,6 +246,8 @@ static void hydraulic_cylinder_slopes(const real *restrict x,
     out[8] = (-(heat_orifice + heat_friction)/power_2_of(T) - lam*T_e/power_2_of(T))*dT_dS;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void hydraulic_cylinder_sizes(const hydraulic_cylinder_reals *p_, long *out)
 {
@@ -297,6 +295,13 @@ static void hydraulic_cylinder_give(hydraulic_cylinder_reals *to, const hydrauli
 
 /* Integrands have kinks: see run/engine. */
 #define BENDS
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { hydraulic_cylinder_bodies = 1 };
+static const int hydraulic_cylinder_body[] = {
+    3,
+};
+#endif /* of what tells of co-states */
 enum {
     hydraulic_cylinder_limits = 0, /* margins of a stage */
     hydraulic_cylinder_reads = 2, /* states that integrands read */

@@ -57,6 +57,8 @@ typedef struct {
     real lam_l;
 } layered_stack_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -259,8 +261,6 @@ static void layered_stack_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void layered_stack_costates(const real *restrict x,
                                    const real *restrict g,
@@ -320,10 +320,6 @@ static void layered_stack_costates(const real *restrict x,
     out[13] = i_hysteron_3;
     out[14] = T_body_3;
 }
-enum { layered_stack_bodies = 3 };
-static const int layered_stack_body[] = {
-    4, 9, 14,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -545,6 +541,8 @@ static void layered_stack_slopes(const real *restrict x,
         + (-(heat_hysteron_3 + heat_damper_3 + heat_contact_2)/power_2_of(T_body_3) - lam*T_e/power_2_of(T_body_3))*dT_body_3_minus_T_0_dS_3;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void layered_stack_sizes(const layered_stack_reals *p, long *out)
 {
@@ -599,6 +597,13 @@ static void layered_stack_give(layered_stack_reals *to, const layered_stack_para
     OF(to->lam_l, lane) = from->lam_l;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { layered_stack_bodies = 3 };
+static const int layered_stack_body[] = {
+    4, 9, 14,
+};
+#endif /* of what tells of co-states */
 enum {
     layered_stack_limits = 3, /* margins of a stage */
     layered_stack_reads = 3, /* states that integrands read */

@@ -50,6 +50,8 @@ typedef struct {
     real c;
 } oscillator_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -110,8 +112,6 @@ static void oscillator_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void oscillator_costates(const real *restrict x,
                                 const real *restrict g,
@@ -131,10 +131,6 @@ static void oscillator_costates(const real *restrict x,
     out[1] = v_mass;
     out[2] = T;
 }
-enum { oscillator_bodies = 1 };
-static const int oscillator_body[] = {
-    2,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -174,6 +170,8 @@ static void oscillator_slopes(const real *restrict x,
     out[4] = -heat_damper/power_2_of(T)*dT_dS;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void oscillator_sizes(const oscillator_reals *p_, long *out)
 {
@@ -209,6 +207,13 @@ static void oscillator_give(oscillator_reals *to, const oscillator_parameters *f
     OF(to->c, lane) = from->c;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { oscillator_bodies = 1 };
+static const int oscillator_body[] = {
+    2,
+};
+#endif /* of what tells of co-states */
 enum {
     oscillator_limits = 0, /* margins of a stage */
     oscillator_reads = 1, /* states that integrands read */

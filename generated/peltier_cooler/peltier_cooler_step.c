@@ -53,6 +53,8 @@ typedef struct {
     real T_0;
 } peltier_cooler_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -135,8 +137,6 @@ static void peltier_cooler_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void peltier_cooler_costates(const real *restrict x,
                                     const real *restrict g,
@@ -154,10 +154,6 @@ static void peltier_cooler_costates(const real *restrict x,
     out[1] = T_plate;
     out[2] = T_sink;
 }
-enum { peltier_cooler_bodies = 2 };
-static const int peltier_cooler_body[] = {
-    1, 2,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -221,6 +217,8 @@ static void peltier_cooler_slopes(const real *restrict x,
         + (-(heat_warm + heat_legs)/power_2_of(T_sink) - h*T_e/power_2_of(T_sink))*dT_sink_dS_h;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void peltier_cooler_sizes(const peltier_cooler_reals *p, long *out)
 {
@@ -259,6 +257,13 @@ static void peltier_cooler_give(peltier_cooler_reals *to, const peltier_cooler_p
     OF(to->T_0, lane) = from->T_0;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { peltier_cooler_bodies = 2 };
+static const int peltier_cooler_body[] = {
+    1, 2,
+};
+#endif /* of what tells of co-states */
 enum {
     peltier_cooler_limits = 0, /* margins of a stage */
     peltier_cooler_reads = 2, /* states that integrands read */

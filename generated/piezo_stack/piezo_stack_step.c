@@ -59,6 +59,8 @@ typedef struct {
     long hysteron_count;
 } piezo_stack_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -162,8 +164,6 @@ static void piezo_stack_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void piezo_stack_costates(const real *restrict x,
                                  const real *restrict g,
@@ -199,10 +199,6 @@ static void piezo_stack_costates(const real *restrict x,
     out[2] = V_capacitor;
     out[3 + hysteron_count] = T;
 }
-enum { piezo_stack_bodies = 1 };
-static const int piezo_stack_body[] = {
-    4,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -288,6 +284,8 @@ static void piezo_stack_slopes(const real *restrict x,
         + (-(heat_hysteron + heat_damper)/power_2_of(T) - lam*T_e/power_2_of(T))*dT_minus_T_0_dS;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void piezo_stack_sizes(const piezo_stack_reals *p_, long *out)
 {
@@ -341,6 +339,13 @@ static void piezo_stack_give(piezo_stack_reals *to, const piezo_stack_parameters
     OF(to->lam, lane) = from->lam;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { piezo_stack_bodies = 1 };
+static const int piezo_stack_body[] = {
+    4,
+};
+#endif /* of what tells of co-states */
 enum {
     piezo_stack_limits = 1, /* margins of a stage */
     piezo_stack_reads = 1, /* states that integrands read */

@@ -60,6 +60,8 @@ typedef struct {
     real T_0;
 } stack_bouc_wen_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -174,8 +176,6 @@ static void stack_bouc_wen_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void stack_bouc_wen_costates(const real *restrict x,
                                     const real *restrict g,
@@ -203,10 +203,6 @@ static void stack_bouc_wen_costates(const real *restrict x,
     out[3] = V_hysteresis;
     out[4] = T;
 }
-enum { stack_bouc_wen_bodies = 1 };
-static const int stack_bouc_wen_body[] = {
-    4,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -313,6 +309,8 @@ static void stack_bouc_wen_slopes(const real *restrict x,
     out[12] = (-(heat_damper + heat_hysteresis + heat_leads)/power_2_of(T) - lam*T_e/power_2_of(T))*dT_dS;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void stack_bouc_wen_sizes(const stack_bouc_wen_reals *p_, long *out)
 {
@@ -359,6 +357,13 @@ static void stack_bouc_wen_give(stack_bouc_wen_reals *to, const stack_bouc_wen_p
     OF(to->T_0, lane) = from->T_0;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { stack_bouc_wen_bodies = 1 };
+static const int stack_bouc_wen_body[] = {
+    4,
+};
+#endif /* of what tells of co-states */
 enum {
     stack_bouc_wen_limits = 0, /* margins of a stage */
     stack_bouc_wen_reads = 1, /* states that integrands read */

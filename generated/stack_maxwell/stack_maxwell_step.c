@@ -58,6 +58,8 @@ typedef struct {
     long slips_count;
 } stack_maxwell_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -156,8 +158,6 @@ static void stack_maxwell_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void stack_maxwell_costates(const real *restrict x,
                                    const real *restrict g,
@@ -188,10 +188,6 @@ static void stack_maxwell_costates(const real *restrict x,
     out[2] = F_spring;
     out[3 + slips_count] = T;
 }
-enum { stack_maxwell_bodies = 1 };
-static const int stack_maxwell_body[] = {
-    4,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -272,30 +268,6 @@ static void stack_maxwell_slopes(const real *restrict x,
     out[8] = (-(heat_leads + heat_slips + heat_damper)/power_2_of(T) - lam*T_e/power_2_of(T))*dT_dS;
 }
 
-/* How many numbers there are of each kind; lanes of each bank; first row of each state. */
-static void stack_maxwell_sizes(const stack_maxwell_reals *p_, long *out)
-{
-    const long slips_count = p_->slips_count;
-    out[0] = 4 + slips_count; /* states */
-    out[1] = 1; /* means */
-    out[2] = 0; /* branches */
-    out[3] = 8 + slips_count + slips_count; /* booked */
-    out[4] = 2 + slips_count; /* processes */
-    out[5] = 9 + 4*slips_count; /* slopes */
-    out[6] = slips_count; /* lanes */
-    out[7] = 0; /* first row */
-    out[8] = 1; /* first row */
-    out[9] = 2; /* first row */
-    out[10] = 3; /* first row */
-    out[11] = 3 + slips_count; /* first row */
-}
-
-/* Path functionals: bank or -1, whether each lane has a drive, inner state. */
-#define PATHS 1
-static const int stack_maxwell_path[PATHS][3] = {
-    {0, 0, 3},
-};
-
 /* Stiffness and limit of each path functional. */
 static void stack_maxwell_path_parameters(const real *restrict x,
                                           const stack_maxwell_reals *restrict p_,
@@ -332,6 +304,26 @@ static void stack_maxwell_drives(const real *restrict x,
     out[0] = v_mass;
 }
 
+#endif /* of the functions of laws */
+
+/* How many numbers there are of each kind; lanes of each bank; first row of each state. */
+static void stack_maxwell_sizes(const stack_maxwell_reals *p_, long *out)
+{
+    const long slips_count = p_->slips_count;
+    out[0] = 4 + slips_count; /* states */
+    out[1] = 1; /* means */
+    out[2] = 0; /* branches */
+    out[3] = 8 + slips_count + slips_count; /* booked */
+    out[4] = 2 + slips_count; /* processes */
+    out[5] = 9 + 4*slips_count; /* slopes */
+    out[6] = slips_count; /* lanes */
+    out[7] = 0; /* first row */
+    out[8] = 1; /* first row */
+    out[9] = 2; /* first row */
+    out[10] = 3; /* first row */
+    out[11] = 3 + slips_count; /* first row */
+}
+
 /* Copy the sizes of banks; place arrays for their parameters from `at` on, return their size. */
 static long stack_maxwell_place_reals(stack_maxwell_reals *to, const stack_maxwell_parameters *from, real *at)
 {
@@ -363,6 +355,18 @@ static void stack_maxwell_give(stack_maxwell_reals *to, const stack_maxwell_para
     OF(to->lam, lane) = from->lam;
 }
 
+/* Path functionals: bank or -1, whether each lane has a drive, inner state. */
+#define PATHS 1
+static const int stack_maxwell_path[PATHS][3] = {
+    {0, 0, 3},
+};
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { stack_maxwell_bodies = 1 };
+static const int stack_maxwell_body[] = {
+    4,
+};
+#endif /* of what tells of co-states */
 enum {
     stack_maxwell_limits = 0, /* margins of a stage */
     stack_maxwell_reads = 1, /* states that integrands read */

@@ -51,6 +51,8 @@ typedef struct {
     real T_0;
 } thermistor_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -112,8 +114,6 @@ static void thermistor_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void thermistor_costates(const real *restrict x,
                                 const real *restrict g,
@@ -133,10 +133,6 @@ static void thermistor_costates(const real *restrict x,
     out[1] = V_cap;
     out[2] = T;
 }
-enum { thermistor_bodies = 1 };
-static const int thermistor_body[] = {
-    2,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -180,6 +176,8 @@ static void thermistor_slopes(const real *restrict x,
     out[5] = dheat_bead_dS/T - heat_bead/power_2_of(T)*dT_dS;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void thermistor_sizes(const thermistor_reals *p, long *out)
 {
@@ -216,6 +214,13 @@ static void thermistor_give(thermistor_reals *to, const thermistor_parameters *f
     OF(to->T_0, lane) = from->T_0;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { thermistor_bodies = 1 };
+static const int thermistor_body[] = {
+    2,
+};
+#endif /* of what tells of co-states */
 enum {
     thermistor_limits = 0, /* margins of a stage */
     thermistor_reads = 1, /* states that integrands read */

@@ -58,6 +58,8 @@ typedef struct {
     real T_0;
 } voice_coil_reals;
 
+#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+
 static inline real power_2_of(real z)
 {
     return z*z;
@@ -147,8 +149,6 @@ static void voice_coil_stage(const real *restrict x,
 }
 
 #if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-
 /* Co-states dU/dx of a stage, of all states; then the rows of entropies. */
 static void voice_coil_costates(const real *restrict x,
                                 const real *restrict g,
@@ -176,10 +176,6 @@ static void voice_coil_costates(const real *restrict x,
     out[3] = T_winding;
     out[4] = T_magnet;
 }
-enum { voice_coil_bodies = 2 };
-static const int voice_coil_body[] = {
-    3, 4,
-};
 #endif /* of what run/engine takes */
 
 /* Derivative of the rates by the state, on branches b; the tables tell its entries. */
@@ -258,6 +254,8 @@ static void voice_coil_slopes(const real *restrict x,
         + (-(heat_losses + heat_contact)/power_2_of(T_magnet) - h*T_e/power_2_of(T_magnet))*dT_magnet_dS_m;
 }
 
+#endif /* of the functions of laws */
+
 /* How many numbers there are of each kind; lanes of each bank; first row of each state. */
 static void voice_coil_sizes(const voice_coil_reals *p_, long *out)
 {
@@ -302,6 +300,13 @@ static void voice_coil_give(voice_coil_reals *to, const voice_coil_parameters *f
     OF(to->T_0, lane) = from->T_0;
 }
 
+#if !defined(ALONE) /* there are co-states for run/engine */
+#define COSTATES
+enum { voice_coil_bodies = 2 };
+static const int voice_coil_body[] = {
+    3, 4,
+};
+#endif /* of what tells of co-states */
 enum {
     voice_coil_limits = 1, /* margins of a stage */
     voice_coil_reads = 2, /* states that integrands read */

@@ -47,12 +47,18 @@ static void {model}_give({model}_reals *to, const {model}_parameters *from, int 
 {given}}}
 """
 BENDS = "#define BENDS\n"
-#: Encloses the text that is for run/engine alone.
-ENGINE = """\
-#if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-"""
-END_OF_ENGINE = "#endif /* of what run/engine takes */\n"
+#: Encloses the functions of laws, which run/engine compiles apart.
+LAWS = (
+    "#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */\n",
+    "#endif /* of the functions of laws */\n",
+)
+#: Encloses a function that is for run/engine alone; then the lines that tell of it.
+ENGINE = (
+    "#if !defined(ALONE) /* the step alone solves its equations to round-off */\n",
+    "#endif /* of what run/engine takes */\n",
+    "#if !defined(ALONE) /* there are co-states for run/engine */\n#define COSTATES\n",
+    "#endif /* of what tells of co-states */\n",
+)
 
 
 def macros_of(text: str) -> tuple[str, Mapping[str, str]]:
@@ -69,9 +75,9 @@ def fixed_parts(text: str, known: Proved) -> Iterator[str]:
     yield from _path_table(known)
     if BENDS in text:
         yield BENDS
+    yield from LAWS
     if "costates" in known.slots:
-        yield ENGINE
-        yield END_OF_ENGINE
+        yield from ENGINE
 
 
 def _data(text: str, circuit: Circuit) -> list[str]:

@@ -1,12 +1,12 @@
 """Records of C lie in Python as the compiler lays them out."""
 
 import ctypes
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from piezo_sym.modules import module_of
-from piezo_sym.run.engine.c_sources import steps_source
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
 from piezo_sym.run.engine.library import Sources
 from piezo_sym.run.engine.records import LONG, ParameterRecords, c_record
@@ -43,7 +43,7 @@ def sources_of(module) -> Sources:
 @pytest.mark.parametrize(("layout", "names"), [("one", STEPS), ("slopes", ("direction",))])
 def test_a_record_has_the_layout_of_c(layout, names, tmp_path):
     module, structures = module_of("piezo_stack"), [c_record(name) for name in names]
-    driver = steps_source(module.NAME, 1, layout)
+    driver = replace(sources_of(module), layout=layout).files()["driver.c"]
     for name, structure in zip(names, structures, strict=True):
         fields = [field for field, _ in structure._fields_]
         driver += layout_in_c(f"MODEL({name})", fields, f"layout_{name}")

@@ -31,12 +31,14 @@ NOTE = """\
  * functions `integrands` and `stage`{costates}; the others and the tables serve Newton's method.
  */"""
 
-#: Encloses the text that is printed for run/engine alone.
-ENGINE = """\
-#if !defined(ALONE) /* the step alone solves its equations to round-off */
-#define COSTATES
-"""
-END_OF_ENGINE = "#endif /* of what run/engine takes */\n"
+#: Encloses the functions of laws: run/engine compiles them apart, so that an edit leaves the rest.
+LAWS = "#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */"
+END_OF_LAWS = "#endif /* of the functions of laws */"
+#: Encloses a function that is printed for run/engine alone; then what tells run/engine of it.
+ENGINE = "#if !defined(ALONE) /* the step alone solves its equations to round-off */"
+END_OF_ENGINE = "#endif /* of what run/engine takes */"
+COSTATES = "#if !defined(ALONE) /* there are co-states for run/engine */\n#define COSTATES"
+END_OF_COSTATES = "#endif /* of what tells of co-states */"
 
 #: The definitions of `real` as one number, if the including file has not defined it.
 REAL = """\
@@ -61,25 +63,29 @@ _LIBRARY = tuple(record.in_c for record in RECORDS.values() if record.smooth)
 def c_step(program: Program, step: Collocation) -> str:
     """Return the text of a model's collocation step."""
     printer = _Printer(program, step)
-    functions = [
+    laws = [
         printer.integrands(),
         *printer.bends(),
         printer.stage(),
         *printer.costates(),
         printer.slopes(),
-        printer.sizes(),
         *printer.paths(),
+    ]
+    rest = [
+        printer.sizes(),
         place_text(program, printer.names),
         give_text(program, printer.names),
+        printer.tables(),
     ]
-    text = "\n\n".join(functions)
+    text = "\n\n".join(laws)
     note = NOTE.replace("{costates}", ", and `costates`" if step.takes_residuals else "")
     head = f'{opening(program)}\n{note}\n#include "{program.name}.h"\n\n#include <math.h>'
     record = record_text(program, printer.names)
     called = calls(text)
     defined = (f"#define {n}_of {n}\n" for n in _LIBRARY if f"{n}_of" in called)
     real = REAL.replace("{functions}", "".join(defined))
-    return "\n\n".join([head, real, record, *powers(text, "real"), text, printer.tables()]) + "\n"
+    laws = [LAWS, *powers(text, "real"), text, END_OF_LAWS]
+    return "\n\n".join([head, real, record, *laws, *rest]) + "\n"
 
 
 @final
@@ -122,15 +128,10 @@ class _Printer:
             yield self._of_state("bends", doc, self.step.stage.bends)
 
     def paths(self) -> Iterator[str]:
-        """Yield the table of path functionals, their parameters and drives, if there are any."""
-        paths, states = self.step.paths, [state.name for state in self.program.states]
+        """Yield the functions of parameters and drives of path functionals, if there are any."""
+        paths = self.step.paths
         if not paths:
             return
-        banks = [None, *self.program.counts]
-        table = [f"{banks.index(p.bank) - 1}, {int(p.own)}, {states.index(p.inner)}" for p in paths]
-        doc = "Path functionals: bank or -1, whether each lane has a drive, inner state"
-        head = f"#define PATHS {len(paths)}\nstatic const int {self.name}_path[PATHS][3] = {{"
-        yield "\n".join([*comment(doc), head, *(f"    {{{row}}}," for row in table), "};"])
         values = [(path, value) for path in paths for value in (path.stiffness, path.limit)]
         rows = [OutputRow(Slot(path.inner, path.bank), value) for path, value in values]
         doc = "Stiffness and limit of each path functional"
@@ -173,7 +174,7 @@ class _Printer:
         )
 
     def costates(self) -> Iterator[str]:
-        """Yield the function of the co-states, and which are temperatures, if the engine asks."""
+        """Yield the function of the co-states, if the engine asks for them."""
         if not self.step.takes_residuals:
             return
         stage = self.step.stage
@@ -181,9 +182,7 @@ class _Printer:
         doc = "Co-states dU/dx of a stage, of all states; then the rows of entropies"
         words = ["x", "g", "p", "out"]
         text = self.frame.writing("costates", words, doc, stage.quantities, writes, local=local)
-        bodies = [f"enum {{ {self.name}_bodies = {len(self.step.bodies)} }};"]
-        bodies += table(f"{self.name}_body", self.step.bodies)
-        yield "\n".join([f"{ENGINE}\n{text}", *bodies, END_OF_ENGINE]).removesuffix("\n")
+        yield f"{ENGINE}\n{text}\n{END_OF_ENGINE}"
 
     def slopes(self) -> str:
         """Return the Jacobian of the rates, in the places of `coupling`."""
@@ -242,7 +241,7 @@ class _Printer:
         """Return the tables by which the equations of a step are solved."""
         limits = [int(limit.strict) for limit in self.step.stage.limits]
         head = ["/* Integrands have kinks: see run/engine. */", "#define BENDS"]
-        head = head if self.step.stage.bends else []
+        head = [*self._path_table(), *(head if self.step.stage.bends else []), *self._bodies()]
         head += ["enum {", f"    {self.name}_limits = {len(limits)}, /* margins of a stage */"]
         records = len(self.program.states)
         used = {name for mean in self.step.means for name in names(mean.value)}
@@ -254,6 +253,27 @@ class _Printer:
         head += [f"    {self.name}_jumps = {int(self.step.jumps)} /* whether a law jumps */", "};"]
         head += [*table(f"{self.name}_strict", limits), *table(f"{self.name}_read", read)]
         return "\n".join([*head, *self.coupling.tables(self.name)])
+
+    def _path_table(self) -> Iterator[str]:
+        """Yield the table of path functionals, if there are any."""
+        paths, states = self.step.paths, [state.name for state in self.program.states]
+        if paths:
+            banks = [None, *self.program.counts]
+            yield from comment(
+                "Path functionals: bank or -1, whether each lane has a drive, inner state"
+            )
+            yield f"#define PATHS {len(paths)}\nstatic const int {self.name}_path[PATHS][3] = {{"
+            for p in paths:
+                yield f"    {{{banks.index(p.bank) - 1}, {int(p.own)}, {states.index(p.inner)}}},"
+            yield "};"
+
+    def _bodies(self) -> Iterator[str]:
+        """Yield which states are entropies of bodies, if the engine asks for co-states."""
+        if self.step.takes_residuals:
+            yield COSTATES
+            yield f"enum {{ {self.name}_bodies = {len(self.step.bodies)} }};"
+            yield from table(f"{self.name}_body", self.step.bodies)
+            yield END_OF_COSTATES
 
     def _at(self, shared: int, lanes: dict[str, int], bank: str | None) -> str:
         """Return the place after `shared` numbers and some rows of lanes."""

@@ -102,21 +102,35 @@ def stage_lanes(stages: int, layout: str, *, lossy: bool) -> int:
     return 1 << (stages - 1).bit_length() if several else 0
 
 
+def derivatives_source(model: str, stages: int) -> str:
+    """Return the file to compile for the derivatives of a step."""
+    step = [f'#include "{model}_step.c"', _prefix(model), tables(stages, stages)]
+    return "\n".join([numbers_source("dual.h"), *step, c_source("derivatives.c")])
+
+
+def laws_source(model: str, layout: str) -> str:
+    """Return the file to compile for the functions of laws, beside that of steps."""
+    step = [f'#include "{model}_step.c"', _prefix(model), c_source("law.h")]
+    return "\n".join([_numbers_of(layout), *step])
+
+
+def _numbers_of(layout: str) -> str:
+    """Return the definitions of `real` for steps."""
+    plain = "#if defined(PLAIN)" if layout == "many" else "#if 1"
+    return "\n".join([plain, "#define REAL_WIDTH 1", "#endif", numbers_source("real.h")])
+
+
 def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -> str:
     """Return the file to compile for collocation steps; `layout` and `lossy` as in `Sources`."""
-    step = [f'#include "{model}_step.c"', _prefix(model)]
-    if layout == "slopes":
-        made = [numbers_source("dual.h"), *step, tables(stages, stages)]
-        return "\n".join([*made, c_source("derivatives.c")])
     lanes = stage_lanes(stages, layout, lossy=lossy)
     vectors = ["#if !defined(PLAIN)", f"#define LANES {lanes}", c_source("at_once.h"), "#endif"]
     head = [
-        "#if defined(PLAIN)" if layout == "many" else "#if 1",
-        "#define REAL_WIDTH 1",
-        "#endif",
-        numbers_source("real.h"),
+        _numbers_of(layout),
         *([f'#include "{model}.c"'] if lossy else []),
-        *step,
+        "#define DECLARED",
+        f'#include "{model}_step.c"',
+        _prefix(model),
+        c_source("law.h"),
         "extern const long MODEL(width);",
         "const long MODEL(width) = REAL_WIDTH;",
         *(vectors * bool(lanes)),

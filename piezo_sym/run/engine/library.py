@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import warnings
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -25,7 +26,9 @@ from piezo_sym.errors import EngineError, FileError, one_line
 from piezo_sym.files import path_text, read_text, temporary_folder, user_cache
 from piezo_sym.run.engine.c_sources import (
     c_source,
+    derivatives_source,
     functions_source,
+    laws_source,
     stage_lanes,
     stages_source,
     steps_source,
@@ -33,18 +36,22 @@ from piezo_sym.run.engine.c_sources import (
 from piezo_sym.run.engine.compiler import (
     FLAGS,
     QUICK,
+    VECTORS,
     WRITTEN_OUT,
     Compiler,
     build,
     compilers,
     passed_by,
+    preprocessed,
     processor,
 )
 from piezo_sym.run.module import GeneratedModule
 
 Layout = Literal["one", "many", "lanes", "slopes"]
-#: The files to compile, which include the others.
-UNITS = ("driver.c", "stages.c")
+#: The files to compile, which include the others. The object of a driver of steps is kept, too: an
+#: edit of a law changes the others alone.
+DRIVER = "driver.c"
+UNITS = ("law.c", DRIVER, "stages.c")
 ENDING = ".dylib" if sys.platform == "darwin" else ".so"
 #: The ending of the file with a library's digest; the prefix of folders in which one is compiled,
 #: and the age [s] at which one is left over from a killed compilation.
@@ -89,14 +96,21 @@ class Sources:
         if self.stages:
             texts[f"{self.name}_step.c"] = self.step
             texts["elimination.c"] = c_source("elimination.c")
-            lossy, head = self.lossy, "" if self.proved else NOT_PROVED
-            driver = steps_source(self.name, self.stages, self.layout, lossy=lossy)
-            texts["driver.c"] = head + driver
-            if lanes := stage_lanes(self.stages, self.layout, lossy=lossy):
-                texts["stages.c"] = head + stages_source(self.name, lanes)
+            texts |= self._steps()
         else:
             texts["driver.c"] = functions_source(self.name)
         return {name: _COMMENT.sub(" ", text) for name, text in texts.items()}
+
+    def _steps(self) -> dict[str, str]:
+        """Return the files to compile for steps by file name."""
+        lossy, head = self.lossy, "" if self.proved else NOT_PROVED
+        if self.layout == "slopes":
+            return {"driver.c": head + derivatives_source(self.name, self.stages)}
+        driver = steps_source(self.name, self.stages, self.layout, lossy=lossy)
+        texts = {"driver.c": head + driver, "law.c": head + laws_source(self.name, self.layout)}
+        if lanes := stage_lanes(self.stages, self.layout, lossy=lossy):
+            texts["stages.c"] = head + stages_source(self.name, lanes)
+        return texts
 
 
 def read_source(module: GeneratedModule, ending: str) -> str:
@@ -177,24 +191,26 @@ def _flags(sources: Sources, flags: tuple[str, ...]) -> tuple[str, ...]:
     Automatic vectorization may change rounding, but steps of many runs in vectors, and of one run,
     must give equal numbers.
     """
-    if not sources.stages or sources.layout == "lanes":
+    if not sources.stages:
+        return tuple(part for flag in flags for part in (VECTORS if flag == "-O3" else [flag]))
+    if sources.layout == "lanes":
         return flags
     if sources.layout == "one" and {*WRITTEN_OUT} <= {*flags}:
         flags = (*QUICK, *(flag for flag in flags if flag != "-O3"))
     return (*flags, "-fno-tree-vectorize", "-fno-openmp-simd")
 
 
-def _key(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> str:
+def _key(texts: Iterable[str], compiler: Compiler, flags: tuple[str, ...]) -> str:
+    """Return the name of what is compiled of some texts."""
     digest = hashlib.sha256()
-    parts = (*compiler.command, compiler.version, *flags, processor())
-    for part in (*sources.files().values(), *parts):
+    for part in (*texts, *compiler.command, compiler.version, *flags, processor()):
         digest.update(part.encode() + b"\0")
     return digest.hexdigest()[:32]
 
 
 def _cached(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> Path:
     """Return a compiled library in the cache, or else in a temporary folder of this process."""
-    place = Path(_key(sources, compiler, flags)) / f"{sources.name}{ENDING}"
+    place = Path(_key(sources.files().values(), compiler, flags)) / f"{sources.name}{ENDING}"
     path = cache_folder() / place
     if _intact(path):
         return path
@@ -233,15 +249,29 @@ def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: P
         folder = Path(temporary)
         for name, text in sources.files().items():
             (folder / name).write_text(text, encoding="utf-8")
-        built = folder / path.name
+        built, driver = folder / path.name, folder / DRIVER
         units = [folder / name for name in UNITS if (folder / name).is_file()]
-        build(compiler, flags, units, built)
-        mark = built.with_suffix(DIGEST)
-        mark.write_text(_digest(built), encoding="ascii")
-        for file in (built, mark):
-            with file.open("rb+") as opened:
-                os.fsync(opened.fileno())
-            file.replace(path.with_name(file.name))
+        if len(units) == 1:
+            build(compiler, flags, units, built)
+        else:
+            key = _key([preprocessed(compiler, flags, driver)], compiler, flags)
+            kept = path.parent.parent / key / f"{sources.name}.o"
+            known = {driver: kept} if _intact(kept) else {}
+            build(compiler, flags, units, built, known)
+            if not known:
+                kept.parent.mkdir(exist_ok=True)
+                _keep(driver.with_suffix(".o").rename(folder / kept.name), kept)
+        _keep(built, path)
+
+
+def _keep(file: Path, path: Path) -> None:
+    """Move a compiled file to its path, with its digest beside it."""
+    mark = file.with_suffix(DIGEST)
+    mark.write_text(_digest(file), encoding="ascii")
+    for one in (file, mark):
+        with one.open("rb+") as opened:
+            os.fsync(opened.fileno())
+        one.replace(path.with_name(one.name))
 
 
 def _clean(folder: Path) -> None:
