@@ -42,7 +42,9 @@ def keys(module, compiler):
     """Return the places in the cache of what one compiler makes of a module."""
     texts = [Path(module.__file__).with_suffix(ending).read_text() for ending in (".h", ".c")]
     sources = libraries.Sources(module.NAME, *texts)
-    return {libraries._key(sources.files().values(), compiler, flags) for flags in FLAGS}
+    texts = sources.files().values()
+    ways = [libraries._flags(sources, flags) for flags in FLAGS]
+    return {libraries._key(texts, compiler, flags) for flags in ways}
 
 
 def arguments(name, x, u, p):

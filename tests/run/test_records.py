@@ -8,7 +8,7 @@ import pytest
 
 from piezo_sym.modules import module_of
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
-from piezo_sym.run.engine.library import Sources
+from piezo_sym.run.engine.library import UNITS, Sources
 from piezo_sym.run.engine.records import LONG, ParameterRecords, c_record
 
 STEPS = ("signal", "segment", "run", "tape", "task", "stepper")
@@ -30,7 +30,8 @@ def compiled(folder: Path, sources: Sources, driver: str) -> ctypes.CDLL:
         (folder / name).write_text(text, encoding="utf-8")
     file = folder / "layout.so"
     flags = [flag for flag in FLAGS[-1] if flag != "-O2"]
-    build(next(compilers()), flags, [folder / "driver.c"], file)
+    files = [path for name in UNITS if (path := folder / name).is_file()]
+    build(next(compilers()), flags, files, file)
     return ctypes.CDLL(str(file))
 
 
