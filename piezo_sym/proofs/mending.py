@@ -104,7 +104,7 @@ def mending_conditions(
     if factor and (said := turning([factor], iphs)):
         return said
     ways = [way for way in _ways(factor, sign, given, within, shown) if way]
-    ways.sort(key=lambda way: bool(_broken(way, points)))
+    ways.sort(key=lambda way: (bool(_broken(way, points)), *_effort(way, given)))
     conditions = next(filter(mended, ways), ())
     for claim in conditions if len(conditions) > 1 else ():
         rest = tuple(c for c in conditions if c != claim)
@@ -113,6 +113,15 @@ def mending_conditions(
         return _signed(sign.law, sign.letter, shown)
     texts = [condition_text(sided(c)) for c in conditions]
     return in_words(texts, _broken(conditions, points), iphs)
+
+
+def _effort(conditions: Collection[Cmp], given: Collection[str]) -> tuple[bool, bool]:
+    """Return whether a run may leave conditions, and whether one is more than a sign.
+
+    No run leaves conditions on parameters alone.
+    """
+    leaves = any(not {*names(c)} <= {*given} for c in conditions)
+    return leaves, any(not isinstance(c.left, Sym) or c.right != ZERO for c in conditions)
 
 
 def _broken(conditions: Iterable[Cmp], points: Iterable[Mapping[str, Value]]) -> list[Cmp]:

@@ -35,6 +35,13 @@ READ = {".py": "NumPy", ".c": "C", "_step.c": "step"}
 MOST_TRIED = 4
 
 
+#: What is said of a condition of the domain that needs more than laws do.
+OUTSIDE = (
+    ": it is evaluated outside the domain, too; write that condition without division, root or "
+    "logarithm, as 'q <= w' for 'q/w <= 1' where w > 0"
+)
+
+
 @final
 @dataclass(frozen=True)
 class Reference:
@@ -162,8 +169,9 @@ def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
             # a derivative divides by the square of a law's divisor
             met = is_zero(left) or any(is_zero(value - d * d) for d in nonzero)
         if not met and not _is_square_sum(value, nonzero):
-            where = "jacobian" if need.derived else "code"
-            yield f"{where} needs a value to be {need.kind} that is not shown to be so"
+            where = "jacobian" if need.derived else need.outside or "code"
+            why = OUTSIDE * (need.outside == "margins")
+            yield f"{where} needs a value to be {need.kind} that is not shown to be so{why}"
 
 
 def _is_square_sum(value: Value, nonzero: Collection[Value]) -> bool:

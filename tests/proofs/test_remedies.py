@@ -261,6 +261,19 @@ def test_conditions_that_the_values_satisfy_are_said_rather_than_others(law):
     assert not unproved(text.replace("MOST", "1"))
 
 
+def test_conditions_on_parameters_are_said_rather_than_on_states():
+    """No run leaves them; and a margin that divides by w is not PROVED where w may be 0."""
+    given = 'w = { value = 1.0, unit = "C" }\nd_c = { value = 2.0, unit = "ohm" }\n[inputs]'
+    law = "(R + d_c*min(max(Q - w, 0)/w, 1))*i"
+    text = assuming(SPEC.replace("[inputs]", given).replace('"R*i"', f'"{law}"'), '"w > 0"')
+    (row,) = (row for row in unproved(text) if row.id == "passive")
+    assert row.reason.endswith("; the condition 'd_c >= 0' in [domain] mends it")
+    assert not unproved(assuming(text, '"d_c >= 0"'))
+    (row,) = unproved(assuming(text, f'"{law.removesuffix("*i")} >= 0"'))
+    assert row.id == "program"
+    assert "write that condition without division" in row.reason
+
+
 @pytest.mark.parametrize(
     ("temperature", "known"),
     [("T_0*(1 - S/c)", "T > 0"), ("T_0*(2 + S/c) if S > 0 else T_0*exp(S/c)", "c > 0")],
