@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, final
 
 from piezo_sym.errors import DriftError, ProofError, UsageError, quote
 from piezo_sym.files import folder_entries, path_of, path_text, read_bytes, write_together
-from piezo_sym.module_cache import MODULE, PROVED, SHAPE, keep, kept
+from piezo_sym.module_cache import MODULE, PROVED, REFUTED, SHAPE, keep, kept
 from piezo_sym.report import Report, Verdict, proofs_json, report_of, smt2
 from piezo_sym.spec.source import shipped
 from piezo_sym.spec.values import Template, shape_hash
@@ -60,23 +60,45 @@ def render(model: Model, *, allow_unproved: bool = False) -> Mapping[str, str]:
 
     A model that is not proved is refused, unless `allow_unproved`.
     """
-    report, files = report_and_files(model)
+    report, files = report_and_files(model, allow_unproved=allow_unproved)
     if not (allow_unproved and f"{model.name}/{model.name}.py" in files):
         report.raise_if_not_proved()
     return files
 
 
-def report_and_files(model: Model) -> tuple[Report, Mapping[str, str]]:
+def report_and_files(
+    model: Model, *, allow_unproved: bool = False
+) -> tuple[Report, Mapping[str, str]]:
     """Return the verdicts on a model, and the text of each file that is generated of it.
 
-    Results of a proved model are kept, so that an equal model is not proved again. If the time was
-    too short to print the module, there are only the files of verdicts.
+    Results are kept, so that an equal model is not examined again. There are only the files of
+    verdicts if the time was too short to print the module, or if a model is known to be refuted;
+    with `allow_unproved` it is printed all the same.
     """
-    files: Mapping[str, str] | None = kept(model.key, PROVED)
+    files: Mapping[str, str] | None
+    if not allow_unproved and (files := kept(model.key, REFUTED)):
+        return report_of(files[PROOFS.format(model.name)]), files
+    files = kept(model.key, PROVED)
     if files and PROOFS.format(model.name) in files:
         return report_of(files[PROOFS.format(model.name)]), files
     report, template = report_and_texts(model)
-    return report, keep_proved(model, report, template)
+    return report, keep_results(model, report, template)
+
+
+def known_refuted(model: Model) -> Report | None:
+    """Return the verdicts on a model that was refuted before, or None."""
+    files = kept(model.key, REFUTED)
+    return report_of(files[PROOFS.format(model.name)]) if files else None
+
+
+def refuse_unproved(report: Report) -> None:
+    """Raise if a required property is not proved; the remedy says how to run the model anyway."""
+    try:
+        report.raise_if_not_proved()
+    except ProofError as error:
+        command = "piezo-sym generate --allow-unproved"
+        error.remedy += f"; or `{command}` writes it all the same, for a run"
+        raise
 
 
 def report_and_texts(
@@ -99,12 +121,14 @@ def report_and_texts(
     return report, template and replace(template, verdict=verdict_line(report))
 
 
-def keep_proved(model: Model, report: Report, template: Template | None) -> dict[str, str]:
-    """Return the text of each generated file of a model; they are kept if it is proved.
+def keep_results(model: Model, report: Report, template: Template | None) -> dict[str, str]:
+    """Return the text of each generated file of a model; they are kept if it is proved or refuted.
 
     If a row was not decided in time, the module is kept, but not the verdicts.
     """
     files = files_of(model, report, template)
+    if report.refuted:
+        keep(model.key, REFUTED, files_of(model, report, None), report.sources)
     if template and report.proved:
         data = model.flatten().model_dump()
         keep(shape_hash(data), SHAPE, asdict(template), report.sources)

@@ -30,8 +30,9 @@ from piezo_sym.files import (
 from piezo_sym.version import own_sources, unchanged
 
 #: Endings of the folders of records: texts of proved modules; texts of modules that are not proved;
-#: templates; all generated files of proved models; specs that were loaded.
+#: templates; all generated files of proved models; specs that were loaded; verdicts that refute.
 MODULE, UNPROVED_MODULE, SHAPE, PROVED, LOADED = "", "-unproved", "-shape", "-proved", "-loaded"
+REFUTED = "-refuted"
 RECORD = "record.json"  # of plain data, after its digest
 
 

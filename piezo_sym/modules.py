@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from piezo_sym.errors import ProofError, UsageError, quote
-from piezo_sym.files import path_text, temporary_folder
+from piezo_sym.errors import UsageError, quote
+from piezo_sym.files import path_text, read_text, temporary_folder
 from piezo_sym.module_cache import (
     LOADED,
     SHAPE,
@@ -227,22 +227,20 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
             _check_derivation(model)
         return cache_module(model.name, model.sha256, found.filled(data), own_sources())
 
-    from piezo_sym.build import keep_proved, report_and_texts
+    from piezo_sym.build import keep_results, known_refuted, refuse_unproved, report_and_texts
 
     def meanwhile(template: Template) -> AbstractContextManager[None]:
         return _compiling_ahead(model.name, shape, template.filled(data), stages)
 
+    written = read_text(GENERATED / model.name / f"{model.name}.py") or ""
+    if model.sha256 not in written and (refuted := known_refuted(model)):
+        refuse_unproved(refuted)
     report, found = report_and_texts(model, meanwhile)
     if found and report.failures and (module := _unproved(model, report, found.filled(data))):
         return module
-    try:
-        report.raise_if_not_proved()
-    except ProofError as error:
-        command = "piezo-sym generate --allow-unproved"
-        error.remedy += f"; or `{command}` writes it all the same, for a run"
-        raise
+    keep_results(model, report, found)
+    refuse_unproved(report)
     assert found is not None  # a report that proves a module has its texts
-    keep_proved(model, report, found)
     kept_module = cached_module(model.name, model.sha256)
     return kept_module or write_module(temporary_folder() / shape, model.name, found.filled(data))
 

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from piezo_sym.spec.model import Model
 
 
+#: How the reason of a row begins that is open because another is not proved.
+RESTS = "it rests on"
+
+
 @final
 class Verdict(Enum):
     """PROVED: for all states, inputs and parameters in the domain, and banks of every size."""
@@ -148,6 +152,13 @@ class Report:
     def decided(self) -> bool:
         """Whether no row is open, so that more time would change none; rounding is no verdict."""
         return all(row.verdict is not Verdict.OPEN or row.id == "rounding" for row in self.rows)
+
+    @property
+    def refuted(self) -> bool:
+        """Whether a required row is refuted, and open rows rest on others: time changes none."""
+        open_rows = [r for r in self.rows if r.verdict is Verdict.OPEN and r.id != "rounding"]
+        found = any(row.verdict is Verdict.REFUTED for row in self.failures)
+        return found and all(row.reason.startswith(RESTS) for row in open_rows)
 
     def raise_if_not_proved(self) -> None:
         """Raise if a required property is not proved: names units first, then refuted, then open.

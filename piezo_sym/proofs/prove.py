@@ -31,7 +31,7 @@ from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import SolverLike, opinions
 from piezo_sym.proofs.ties import drive_of
-from piezo_sym.report import Row, Verdict
+from piezo_sym.report import RESTS, Row, Verdict
 from piezo_sym.spec.tables import condition_text
 
 #: Size of banks in a refutation by algebra: with one lane, coupling between lanes would not show.
@@ -170,10 +170,10 @@ def _unproved_premise(
         name = f"{premise[0]} of {premise[1]}" if premise[1] else premise[0]
         verdicts = [row.verdict for row in before if (row.id, row.element) == premise]
         if not verdicts:
-            return Finding(Verdict.OPEN, None, f"it rests on {name}, which was not looked at")
+            return Finding(Verdict.OPEN, None, f"{RESTS} {name}, which was not looked at")
         for verdict in verdicts:
             if verdict is not Verdict.PROVED:
-                reason = f"it rests on {name}, which is {verdict.value}"
+                reason = f"{RESTS} {name}, which is {verdict.value}"
                 return Finding(Verdict.OPEN, None, reason)
     return None
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from piezo_sym import Model, generate, simulate
+from piezo_sym import Model, ProofError, generate, simulate
 from piezo_sym.build import render, report_and_files
 from piezo_sym.cli import run
 from piezo_sym.report import Report, Verdict
@@ -56,6 +56,21 @@ def test_a_run_proves_for_verify_too(model, asked):
     assert len(asked) == 1
 
 
+def test_a_refuted_model_is_not_examined_again(spec, asked, tmp_path):
+    spec["elements"]["damper"]["force"] = "-d*v"
+    model = Model(**spec)
+    report, files = report_and_files(model)
+    again, same = report_and_files(model)
+    assert len(asked) == 1
+    assert (rows(again), same.keys() < files.keys()) == (rows(report), True)
+    assert all(files[name] == text for name, text in same.items())
+    for refused in (lambda: generate(model, tmp_path), lambda: simulate(model, duration=1e-4)):
+        with pytest.raises(ProofError, match="passive is REFUTED"):
+            refused()
+    assert len(asked) == 1
+    assert f"{model.name}/{model.name}.py" in render(model, allow_unproved=True)
+
+
 def test_another_value_or_law_is_report_and_files(spec, asked):
     report_and_files(Model(**spec))
     spec["parameters"]["M"]["value"] *= 2
@@ -65,7 +80,8 @@ def test_another_value_or_law_is_report_and_files(spec, asked):
     assert len(asked) == 3
 
 
-def test_what_is_not_proved_is_not_kept(unproved, asked):
+def test_what_is_open_is_not_kept(unproved, asked, monkeypatch):
+    monkeypatch.setattr(Report, "refuted", False)
     assert rows(report_and_files(unproved)[0]) == rows(report_and_files(unproved)[0])
     assert len(asked) == 2
 
@@ -75,6 +91,7 @@ def kept_by_force(model, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr(Report, "proved", True)
         patch.setattr(Report, "decided", True)
+        patch.setattr(Report, "refuted", False)
         report_and_files(model)
 
 
