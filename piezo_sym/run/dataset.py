@@ -12,7 +12,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
+from math import nan
 from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
@@ -36,6 +37,10 @@ if TYPE_CHECKING:
 
 Variable: TypeAlias = tuple[tuple[str, ...], "NDArray[Any] | pandas.Index[Any]", dict[str, Any]]
 Named: TypeAlias = tuple[str, Variable]
+#: A quantity without its numbers: name, dimensions, shape, attributes.
+Field: TypeAlias = tuple[str, tuple[str, ...], tuple[int, ...], tuple[tuple[str, Any], ...]]
+#: Datasets of at most so many samples are kept to be copied.
+MOST_KEPT = 10_000
 #: The argument that selects quantities of elements, and its value for all of them.
 OUTPUTS, EVERY = "simulate.outputs", "all"
 #: How the heat of a conduction is described: no heat is released, and it may be negative.
@@ -182,17 +187,32 @@ def to_dataset(
     more: Iterable[Named] = (),
 ) -> xarray.Dataset:
     """Return a run as a Dataset, with these attributes and quantities beside its own."""
+    evaluation, module = Evaluation.of(system, trajectory), system.module
+    arrays: dict[str, Any] = {}
+    fields = list[Field]()
+    for name, (dims, array, about) in (*evaluation.instants(), *evaluation.ledger(), *more):
+        if name in arrays or name in {"time", *module.BANKS}:
+            what = f"two quantities are named '{name}'"
+            raise UsageError(what, f"model '{module.NAME}'", remedy="rename one in the spec")
+        arrays[name] = array
+        fields.append((name, dims, array.shape, tuple(about.items())))
+    make = blank if times.size <= MOST_KEPT else blank.__wrapped__
+    made = make(tuple(fields), times.tobytes(), lane_counts(system)).copy(data=arrays)
+    return made.assign_attrs(model_attrs(system) | dict(attrs))
+
+
+@lru_cache(maxsize=8)
+def blank(
+    fields: tuple[Field, ...], times: bytes, counts: tuple[tuple[str, int], ...]
+) -> xarray.Dataset:
+    """Return a Dataset without numbers: runs in a loop differ in those alone, and copy it."""
     import xarray
 
-    evaluation = Evaluation.of(system, trajectory)
-    coords = dict(coordinates(system, times))
-    data: dict[str, xarray.Variable] = {}
-    for name, variable in (*evaluation.instants(), *evaluation.ledger(), *more):
-        if name in data or name in coords:
-            what = f"two quantities are named '{name}'"
-            raise UsageError(what, f"model '{system.module.NAME}'", remedy="rename one in the spec")
-        data[name] = xarray.Variable(*variable, fastpath=True)  # else xarray imports all of Dask
-    return xarray.Dataset(data, coords, model_attrs(system) | dict(attrs))
+    data = {
+        name: xarray.Variable(dims, np.broadcast_to(nan, shape), dict(about), fastpath=True)
+        for name, dims, shape, about in fields
+    }  # from tuples, xarray would import all of Dask
+    return xarray.Dataset(data, dict(coordinates(counts, np.frombuffer(times).copy())))
 
 
 def model_attrs(system: DrivenModule) -> dict[str, Any]:
@@ -203,7 +223,12 @@ def model_attrs(system: DrivenModule) -> dict[str, Any]:
     return model | {f"parameter_{name}": value for name, value in plain.items()}
 
 
-def coordinates(system: DrivenModule, times: FloatArray) -> Iterator[Named]:
+def lane_counts(system: DrivenModule) -> tuple[tuple[str, int], ...]:
+    """Return the banks of a model, each with the number of its lanes."""
+    return tuple((bank, lanes(system.parameters, bank)) for bank in system.module.BANKS)
+
+
+def coordinates(counts: Iterable[tuple[str, int]], times: FloatArray) -> Iterator[Named]:
     """Yield the time and the lanes of each bank, as pandas indexes.
 
     From arrays, xarray would make these itself, but only after an attempt to import pint.
@@ -211,8 +236,8 @@ def coordinates(system: DrivenModule, times: FloatArray) -> Iterator[Named]:
     import pandas
 
     yield "time", (("time",), pandas.Index(times), attributes("s", "time"))
-    for bank in system.module.BANKS:
-        numbers = pandas.RangeIndex(1, lanes(system.parameters, bank) + 1)
+    for bank, count in counts:
+        numbers = pandas.RangeIndex(1, count + 1)
         yield bank, ((bank,), numbers, attributes("1", f"lane of bank '{bank}'"))
 
 

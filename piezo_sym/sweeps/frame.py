@@ -13,7 +13,7 @@ import pandas
 import xarray
 
 from piezo_sym.errors import UsageError
-from piezo_sym.run.dataset import attributes, coordinates, model_attrs, named_rows
+from piezo_sym.run.dataset import attributes, coordinates, lane_counts, model_attrs, named_rows
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import read_parameters
 from piezo_sym.run.system import DrivenModule
@@ -33,7 +33,7 @@ def frame_of(plan: Plan, module: GeneratedModule) -> xarray.Dataset:
     system = DrivenModule(module, base, plan.inputs_at(module, plan.points[0]))
     by_function = callable(plan.reduce)
     inputs = dict(inputs_of(plan, module, system))
-    coords = dict(coordinates(system, plan.samples))
+    coords = dict(coordinates(lane_counts(system), plan.samples))
     taken = {*coords, *inputs, "error", *(() if by_function else layout(system))}
     for axis in plan.axes:
         for name, (values, attrs) in axis.coordinates():

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD, Watch, collocate
-from piezo_sym.run.dataset import coordinates, named_rows
+from piezo_sym.run.dataset import coordinates, lane_counts, named_rows
 from piezo_sym.run.engine.engine import Engine, Members, engine_of
 from piezo_sym.run.guard import check_inputs, check_start, inputs_vary, limited
 from piezo_sym.run.module import GeneratedModule, row_count
@@ -240,7 +240,7 @@ def dataset(
     module, size = system.module, (len(u), len(points), plan.samples.size)
     waves = np.broadcast_to(u[:, None], size)
     inputs = dict(named_rows(system, (MEMBER, "time"), module.INPUTS, waves))
-    coords: dict[str, Any] = dict(coordinates(system, plan.samples))
+    coords: dict[str, Any] = dict(coordinates(lane_counts(system), plan.samples))
     for n, axis in enumerate(plan.axes):
         for name, (values, attrs) in axis.coordinates():
             taken = name in quantities or name in inputs or name in coords
