@@ -450,11 +450,11 @@ def test_a_run_that_stops_leaves_a_file_and_says_so(call, tmp_path):
     options = ("--duration", "10", "-i", "F=sine(1,1)", "--out", out)
     answer = call("simulate", warm, *options, "--event", "on=F")
     assert answer.code == 2
-    assert answer.err.endswith(f"'{out}' holds the run until t = 3.1 s\n")
-    assert answer.out == "event on, 6 in all: t = 0.5, 1, 1.5, 2, ...\n"
+    assert answer.err.endswith(f"'{out}' holds the run until t = 3.97 s\n")
+    assert answer.out == "event on, 7 in all: t = 0.5, 1, 1.5, 2, ...\n"
     with xarray.open_dataset(out) as partial:
-        assert float(partial.time[-1]) == pytest.approx(3.1)
-        assert partial.on.values == pytest.approx(0.5 * np.arange(1, 7))
+        assert float(partial.time[-1]) == pytest.approx(3.97)
+        assert partial.on.values == pytest.approx(0.5 * np.arange(1, 8))
 
 
 @pytest.mark.some(1)
