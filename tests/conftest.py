@@ -19,9 +19,6 @@ from hypothesis import settings
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("quick", settings.get_profile("repeatable"), max_examples=25)
 
-# What SymPy has found is kept for longer than the last thousand calls: tests ask much that is alike.
-os.environ.setdefault("SYMPY_CACHE_SIZE", "100000")
-
 # Modules and tests stay: to look for garbage among them as often as Python does takes long.
 gc.set_threshold(50_000, 20, 20)
 
