@@ -10,6 +10,7 @@ import signal
 import sys
 from collections import defaultdict
 from contextlib import contextmanager
+from pathlib import Path
 from zlib import crc32
 
 import pytest
@@ -35,6 +36,18 @@ def pytest_configure(config):
     settings.load_profile("quick" if is_quick(config) else "repeatable")
 
 
+#: Names of the models that are files.
+FILES = {path.stem for path in Path(__file__).parents[1].glob("[pt]*/*/**/*.toml")}
+
+
+def _place(item, n):
+    """Return a number by which cases are sorted; of one that is kept, the model's comes first."""
+    name = item.name.partition("[")[2]
+    words = name.rstrip("]").split("-") if n == 1 else []
+    model = next((Path(word).stem for word in words if Path(word).stem in FILES), "")
+    return crc32(f"{model}]".encode()), crc32(name.encode())
+
+
 @pytest.hookimpl(tryfirst=True)  # before `-m "not long"` looks at marks
 def pytest_collection_modifyitems(items):
     """Keep ``some(n)`` cases of a test in the fast tier; the others are long.
@@ -47,7 +60,7 @@ def pytest_collection_modifyitems(items):
         if (mark := item.get_closest_marker("some")) and not item.get_closest_marker("long"):
             cases[item.nodeid.split("[")[0], mark.args[0]].append(item)
     for (_, n), found in cases.items():
-        found.sort(key=lambda item: crc32(item.name.partition("[")[2].encode()))
+        found.sort(key=lambda item: _place(item, n))
         for item in found[n:]:
             item.add_marker(pytest.mark.long)
 

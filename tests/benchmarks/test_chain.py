@@ -74,8 +74,8 @@ def measured(links):
 
 
 def test_a_chains_module_grows_with_its_length():
-    (_, short), long = measured(6), printed(24)
-    print(f"6 links: {len(short)} characters, 24 links: {len(long)}")
+    (_, short), long = measured(4), printed(16)
+    print(f"4 links: {len(short)} characters, 16 links: {len(long)}")
     assert len(long) <= 4 * 1.2 * len(short)
 
 

@@ -123,8 +123,7 @@ print(template_of(derive(model)).filled(model.model_dump())[".py"], end="")
     assert [(one[:7], other[:7]) for one, other in pairs] == [("Proofs:", "Proofs:")]
 
 
-@pytest.mark.some(1)
-@pytest.mark.parametrize("count", [3, 20_000])
+@pytest.mark.parametrize("count", [3, pytest.param(20_000, marks=pytest.mark.long)])
 def test_the_size_of_a_bank_is_its_default_and_the_hash(spec, count):
     pairs = zip(with_count(spec, 2), with_count(spec, count), strict=True)
     first, second, default = [pair for pair in pairs if pair[0] != pair[1]]

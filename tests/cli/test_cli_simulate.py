@@ -20,6 +20,7 @@ from piezo_sym.cli.words import spelled
 from piezo_sym.run.signals import SIGNALS
 
 ROOT = Path(__file__).parents[2]
+MODELS = ROOT / "piezo_sym" / "models"
 
 SHORT = ("simulate", "piezo_stack", "--duration", "1e-3", "--times", "11")
 DRIVEN = (*SHORT, "--input", "V_in=sine(100, 100)", "--set", "L=5e-4")
@@ -441,19 +442,19 @@ def test_a_dissipative_start_is_asked_for_in_a_word(call):
     assert len(refused.err.splitlines()) == 1
 
 
-def test_a_run_that_stops_leaves_a_file_and_says_so(call, spec_file, tmp_path):
-    warm = spec_file("[inputs]", 'T_m = { value = 300.0, unit = "K" }\n[inputs]')
-    text = warm.read_text(encoding="utf-8").replace("assume = [", 'assume = ["T < T_m", ', 1)
-    warm.write_text(text, encoding="utf-8")
-    out = tmp_path / "warm.nc"
-    options = ("--duration", "0.2", "-i", "V_in=sine(100,100)", "--out", out)
-    answer = call("simulate", warm, *options, "--event", "on=V_in")
+def test_a_run_that_stops_leaves_a_file_and_says_so(call, tmp_path):
+    text = (MODELS / "oscillator.toml").read_text(encoding="utf-8").replace("oscillator", "warm")
+    text = text.replace("[inputs]", 'T_m = { value = 300.8, unit = "K" }\n[inputs]')
+    warm, out = tmp_path / "warm.toml", tmp_path / "warm.nc"
+    warm.write_text(text.replace("assume = [", 'assume = ["T < T_m", '), encoding="utf-8")
+    options = ("--duration", "10", "-i", "F=sine(1,1)", "--out", out)
+    answer = call("simulate", warm, *options, "--event", "on=F")
     assert answer.code == 2
-    assert answer.err.endswith(f"'{out}' holds the run until t = 0.0304 s\n")
-    assert answer.out == "event on, 6 in all: t = 0.005, 0.01, 0.015, 0.02, ...\n"
+    assert answer.err.endswith(f"'{out}' holds the run until t = 3.97 s\n")
+    assert answer.out == "event on, 7 in all: t = 0.5, 1, 1.5, 2, ...\n"
     with xarray.open_dataset(out) as partial:
-        assert float(partial.time[-1]) == pytest.approx(0.0304)
-        assert partial.on.values == pytest.approx(0.005 * np.arange(1, 7))
+        assert float(partial.time[-1]) == pytest.approx(3.97)
+        assert partial.on.values == pytest.approx(0.5 * np.arange(1, 8))
 
 
 @pytest.mark.some(1)

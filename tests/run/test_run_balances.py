@@ -74,7 +74,7 @@ def test_entropy_is_what_was_made_and_what_came_in(how):
 
 
 @pytest.mark.some(1)
-@pytest.mark.parametrize("times", [20_001, 200_001])
+@pytest.mark.parametrize("times", [20_001, pytest.param(200_001, marks=pytest.mark.long)])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5])
 def test_production_never_falls_between_close_samples(rtol, times):
     """Samples' own errors are larger than what is produced between two that are so close."""

@@ -128,7 +128,7 @@ def exact(text, **options):
 
 
 @pytest.mark.some(1)
-@pytest.mark.parametrize("width", [1e-3, 1e-4])
+@pytest.mark.parametrize("width", [1e-3, pytest.param(1e-4, marks=pytest.mark.long)])
 @pytest.mark.parametrize("options", SLIDES.values(), ids=SLIDES)
 def test_friction_is_as_good_as_asked_for(options, width):
     """Each reversal may add a few rtol; before steps told how strange they are, it was 5000."""

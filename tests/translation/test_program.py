@@ -21,6 +21,8 @@ from tests.translation.printed import TEXTS, printed, rows
 
 SPECS = Path(__file__).parents[1] / "networks" / "specs"
 ALL = ["piezo_stack", *sorted(path.name for path in SPECS.glob("*.toml"))]
+#: Seconds; `tests/run/test_run_outputs.py` has it proved in the fast tier, too.
+SLOW = {"rigid_couplings.toml": pytest.mark.long}
 #: A lever, several bodies, conduction, a resistive loop with a bank, two banks.
 MUTATED = [
     "piezo_stack",
@@ -42,7 +44,7 @@ def verdict(known, language, text):
 
 
 @pytest.mark.some(2)
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=SLOW.get(name, ())) for name in ALL])
 def test_what_is_printed_is_proved(name):
     iphs = iphs_of(name)
     (row,) = rows(iphs, printed(iphs))

@@ -62,7 +62,7 @@ def verdicts(report):
 def test_the_others_are_decided(worker, stage):
     row = "(obligation.id, obligation.element)" if stage == "proving" else "row"
     worker(**{stage: f"{row} == {DAMPER} and {ENDS}"})
-    report = process.examined(load("piezo_stack"))
+    report = process.examined(load("oscillator"))
     found = verdicts(report)
     assert {key for key, verdict in found.items() if verdict is not Verdict.PROVED} == {
         DAMPER,
@@ -71,7 +71,7 @@ def test_the_others_are_decided(worker, stage):
     assert {row.points > 0 for row in report.rows if row.verdict is Verdict.PROVED} == {True, False}
     (hard,) = (row for row in report.rows if (row.id, row.element) == DAMPER)
     assert hard.reason == "not decided in its share of 28 s"
-    with pytest.raises(ProofError, match=r"piezo_stack\.damper: passive is OPEN: not decided in"):
+    with pytest.raises(ProofError, match=r"oscillator\.damper: passive is OPEN: not decided in"):
         report.raise_if_not_proved()
 
 
@@ -89,7 +89,7 @@ def test_a_row_that_takes_more_than_its_share_gets_what_is_left(worker, tmp_path
     once = f"Path({str(tmp_path / 'seen')!r})"
     hangs = f"row == {DAMPER} and not {once}.exists() and ({once}.touch(), 3**10**10)"
     worker(attacking=hangs, share=0.05)
-    assert process.examined(load("piezo_stack")).proved
+    assert process.examined(load("oscillator")).proved
     assert (tmp_path / "seen").exists()
 
 
