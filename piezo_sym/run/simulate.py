@@ -66,7 +66,7 @@ def simulate(
     to round-off at every sample, for the states returned. With `rtol` it is Gauss collocation with
     mean co-states over each step, of order eight or twelve: the largest error of a run is about
     rtol times each state's largest magnitude (of a bank: of any lane). Where there are stores and
-    bodies, but no `stop`, the equations of a step are solved to about rtol/100; the energy that is
+    bodies, but no `stop`, the equations of a step are solved to about rtol/20; the energy that is
     left of them goes to the first body, and the heat of every process is scaled by one factor
     within 1e-4 of 1, so that both balances are exact. Other steps, and those that this factor would
     not do for, are solved to round-off. Steps end where a law has a kink or a jump, or go over
