@@ -55,7 +55,7 @@ typedef struct {
     real lam;
 } gas_piston_reals;
 
-#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+#if !defined(LAWS_APART) /* the functions of laws, which run/engine compiles apart */
 
 static inline real power_2_of(real z)
 {

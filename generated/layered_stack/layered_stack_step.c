@@ -57,7 +57,7 @@ typedef struct {
     real lam_l;
 } layered_stack_reals;
 
-#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+#if !defined(LAWS_APART) /* the functions of laws, which run/engine compiles apart */
 
 static inline real power_2_of(real z)
 {

@@ -50,7 +50,7 @@ typedef struct {
     real c;
 } oscillator_reals;
 
-#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+#if !defined(LAWS_APART) /* the functions of laws, which run/engine compiles apart */
 
 static inline real power_2_of(real z)
 {

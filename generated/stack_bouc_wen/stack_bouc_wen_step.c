@@ -60,7 +60,7 @@ typedef struct {
     real T_0;
 } stack_bouc_wen_reals;
 
-#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */
+#if !defined(LAWS_APART) /* the functions of laws, which run/engine compiles apart */
 
 static inline real power_2_of(real z)
 {

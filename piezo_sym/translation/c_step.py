@@ -7,6 +7,8 @@ by function and row.  The grammar:
     function    static void <model>_{integrands, stage, ...}[_part_N](...), see `c_function`
     helper      static inline real power_N_of(real z) { return expression; }
     table       enum { NAME = n, ... };    static const int NAME[] = { n, ... };
+    sections    functions of laws between two directives, and among them the co-states; then sizes
+                and tables, those that tell of co-states between directives, too
 
 Macros and fixed parts are those of `c_step_parts`. A mean that is given to a stage is the mean of
 its integrand: a co-state plus terms that do not depend on the state. A branch is 1 where its
@@ -21,6 +23,7 @@ bodies, `costates` are those of all states, and a table lists the states that ar
 
 import ast
 from collections import ChainMap
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import final
 
@@ -28,7 +31,7 @@ from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.translation.c_forms import add_helper, add_part, check_parts, helper_is, is_part
 from piezo_sym.translation.c_function import NOT_COMPARED, CFunction
 from piezo_sym.translation.c_scope import Branch, File, Scope, kind_of
-from piezo_sym.translation.c_step_parts import BENDS, fixed_parts, macros_of
+from piezo_sym.translation.c_step_parts import BENDS, SECTION, fixed_parts, macros_of
 from piezo_sym.translation.c_text import python_of
 from piezo_sym.translation.change import put, spelled
 from piezo_sym.translation.expressions import refused
@@ -52,44 +55,58 @@ _RESULTS |= {"slopes out": NOT_COMPARED, "bends out": NOT_COMPARED}
 def read_step(text: str, known: Proved) -> dict[Key, Value]:
     """Return every row that the functions of a printed step write; `known` is of `proved_step`."""
     macros, calls = macros_of(text)
-    module = python_of(text, known.iphs.model.name, macros, [*fixed_parts(text, known)])
+    parts = [*fixed_parts(text, known)]
+    module = python_of(text, known.iphs.model.name, macros, [part for part, _ in parts])
     calls = {"chosen": "choice", **calls}
     file = File(known, "real", "reals", _SIGNATURES, calls, _RESULTS)
-    return _Step(module, file).rows(bends=BENDS in text)
+    return _Step(module, file, [name for _, name in parts]).rows(bends=BENDS in text)
 
 
 @final
 class _Step:
     """Reads a step: `functions` and `tables`, by their names without the model's name."""
 
-    def __init__(self, module: ast.Module, file: File) -> None:
+    def __init__(self, module: ast.Module, file: File, sections: Sequence[str]) -> None:
         self.file, self.iphs, self.field = file, file.known.iphs, file.known.field
         self.functions: dict[str, ast.FunctionDef] = {}
         self.tables: dict[str, list[int]] = {}
+        self.section = "head"
         for node in module.body:
             match node:
-                case ast.FunctionDef() if kind_of(node.returns) == "static inline real":
+                case ast.Expr(ast.Constant(int() as n)):
+                    self.section = sections[n]
+                case ast.FunctionDef(name) if kind_of(node.returns) == "static inline real":
+                    self._stands(name, "laws")
                     self._power(node)
-                case ast.FunctionDef() if is_part(node):
+                case ast.FunctionDef(name) if is_part(node):
+                    self._own(name, "laws")
                     add_part(node, file)
                 case ast.FunctionDef(name):
-                    self.functions[self._own(name)] = node
+                    self.functions[self._own(name, "laws")] = node
                 case ast.Assign([ast.Name(name)], number):
-                    self.tables[self._own(name)] = [_number(number)]
+                    self.tables[self._own(name, "")] = [_number(number)]
                 case ast.AnnAssign(
                     ast.Name(name), ast.Constant("static const int [ ]"), ast.List(numbers)
                 ):
-                    self.tables[self._own(name)] = [*map(_number, numbers)]
+                    self.tables[self._own(name, "")] = [*map(_number, numbers)]
                 case _:
                     raise refused(node, "a part of a step")
 
-    def _own(self, name: str) -> str:
-        """Return a function's or table's name without the model's name; refuse one used before."""
+    def _own(self, name: str, section: str) -> str:
+        """Return a function's or table's name without the model's name; refuse one used before.
+
+        It stands in `section`, unless `SECTION` says another.
+        """
         prefix = f"{self.iphs.model.name}_"
         word = name.removeprefix(prefix)
         if not name.startswith(prefix) or word in self.functions or word in self.tables:
             raise NotShownError(f"a function or table {name} of the step's own")
+        self._stands(name, SECTION.get(word.partition("_part_")[0], section))
         return word
+
+    def _stands(self, name: str, section: str) -> None:
+        if self.section != section:
+            raise NotShownError(f"{name} stands in a part that not all programs compile")
 
     def _power(self, node: ast.FunctionDef) -> None:
         """Record a helper after checking that it is an integer power."""

@@ -49,16 +49,21 @@ static void {model}_give({model}_reals *to, const {model}_parameters *from, int 
 BENDS = "#define BENDS\n"
 #: Encloses the functions of laws, which run/engine compiles apart.
 LAWS = (
-    "#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */\n",
+    "#if !defined(LAWS_APART) /* the functions of laws, which run/engine compiles apart */\n",
     "#endif /* of the functions of laws */\n",
 )
-#: Encloses a function that is for run/engine alone; then the lines that tell of it.
-ENGINE = (
+#: Encloses a function that is for run/engine alone, and the lines that tell of it.
+COSTATES = (
     "#if !defined(ALONE) /* the step alone solves its equations to round-off */\n",
     "#endif /* of what run/engine takes */\n",
+)
+TELLS = (
     "#if !defined(ALONE) /* there are co-states for run/engine */\n#define COSTATES\n",
     "#endif /* of what tells of co-states */\n",
 )
+#: The section in which a function or table stands, by its name without the model's; others stand in
+#: "laws" if they are functions, and behind that section if they are tables.
+SECTION = {"sizes": "", "costates": "costates", "bodies": "bodies", "body": "bodies"}
 
 
 def macros_of(text: str) -> tuple[str, Mapping[str, str]]:
@@ -69,15 +74,22 @@ def macros_of(text: str) -> tuple[str, Mapping[str, str]]:
     return MACROS.replace("{functions}", "".join(lines)), calls
 
 
-def fixed_parts(text: str, known: Proved) -> Iterator[str]:
-    """Yield what a step has besides macros, functions, enumerations and tables."""
-    yield from _data(text, known.iphs.circuit)
-    yield from _path_table(known)
-    if BENDS in text:
-        yield BENDS
-    yield from LAWS
-    if "costates" in known.slots:
-        yield from ENGINE
+def fixed_parts(text: str, known: Proved) -> Iterator[tuple[str, str]]:
+    """Yield what a step has besides macros, functions, enumerations and tables, in its order.
+
+    Each is given with the name of the section that begins behind it: what stands in another one
+    would be left out of a program, or of a part that is compiled apart.
+    """
+    record, *copies = _data(text, known.iphs.circuit)
+    has_costates = "costates" in known.slots
+    yield record, "record"
+    yield LAWS[0], "laws"
+    if has_costates:
+        yield from zip(COSTATES, ("costates", "laws"), strict=True)
+    rest = [LAWS[1], *copies, *_path_table(known), *([BENDS] if BENDS in text else [])]
+    yield from ((part, "") for part in rest)
+    if has_costates:
+        yield from zip(TELLS, ("bodies", ""), strict=True)
 
 
 def _data(text: str, circuit: Circuit) -> list[str]:

@@ -47,7 +47,7 @@ def python_of(text: str, model: str, macros: str = "", known: Sequence[str] = ()
     """Return a C file as Python.
 
     It includes the header of `model`; `macros` is the text expected after the includes; the parts
-    in `known` are expected word for word, and left out.
+    in `known` are expected word for word and in this order: each becomes the line of its number.
     """
     head = re.match(_HEAD.replace("{model}", re.escape(model)), text)
     begins = head is not None and text.startswith(macros, head.end())
@@ -86,8 +86,11 @@ def _lines(code: str, marks: Sequence[str]) -> list[str]:
     *parts, last = re.split(r" *([;{}]) *", code)
     lines, depth, left = list[str](), 0, [*marks]
     for text, end in zip(parts[::2], parts[1::2], strict=True):
-        if end == ";" and depth == 0 and text in left:
+        if end == ";" and depth == 0 and text in left[:1]:
             left.remove(text)
+            lines.append(f"{ord(text) - ord(marks[0])}")
+        elif text in marks:
+            raise NotShownError("the C file has its parts in another order, or one in a block")
         elif end == "{":
             lines.append(f"{' ' * depth}{_head(text, depth)}:")
             depth += 1

@@ -176,6 +176,38 @@ def test_a_step_outside_the_grammar_is_open(made, case):
     assert row(made, *NOT_READ[case]).verdict is Verdict.OPEN
 
 
+def part(text, name):
+    """Return a part of a step that begins with a line of this name, up to a line without indent."""
+    return re.search(rf"(?m)^[^\n]*{name}[^\n]*\n(?:[ #{{][^\n]*\n|\);?\n)*}};?\n", text)[0]
+
+
+BEGINS, ENDS = "#if !defined(LAWS_APART)", "#endif /* of the functions of laws */\n"
+ALONE, TAKEN = "#if !defined(ALONE) /* the step alone", "#endif /* of what run/engine takes */\n"
+TOLD = "#endif /* of what tells of co-states */\n"
+PLACES = {
+    "piezo_stack": [("_stage\\(", TAKEN), ("_costates\\(", ALONE), ("_slopes\\(", "enum {"),
+                    ("_sizes\\(", ENDS), ("piezo_stack_strict", TOLD), ("_give\\(", ENDS)],
+    "stack_maxwell": [("#define PATHS", ENDS), ("_path_parameters\\(", TOLD)],
+    "amplified_stack": [("#define BENDS", ENDS), ("_bends\\(", TAKEN)],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_what_stands_where_not_all_programs_compile_it_is_open(name):
+    """Once a table of stops could stand among the laws, where the engine does not see it."""
+    iphs = iphs_of(name)
+    text, known = printed(iphs)["step"], Reference(iphs)
+    assert different("step", text, known) == ()
+    for word, place in PLACES[name]:
+        moved = "#define BENDS\n" if word == "#define BENDS" else part(text, word)
+        assert text.count(moved) == 1
+        wrong = text.replace(moved, "").replace(place, f"{moved}{place}", 1)
+        assert [row.verdict for row in different("step", wrong, known)] == [Verdict.OPEN], word
+    begin, end = re.search(rf"{re.escape(BEGINS)}.*\n", text)[0], ENDS
+    for old, new in ((begin, ""), (end, ""), (end, f"{begin}{end}{end}")):
+        assert different("step", text.replace(old, new), known)[0].verdict is Verdict.OPEN
+
+
 def test_a_mean_may_be_of_a_costate_and_a_constant(made):
     """The mean of T - 2 T_0 tells T as well as that of T - T_0, if the stage adds 2 T_0."""
     text, known = made

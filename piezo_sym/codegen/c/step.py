@@ -32,7 +32,7 @@ NOTE = """\
  */"""
 
 #: Encloses the functions of laws: run/engine compiles them apart, so that an edit leaves the rest.
-LAWS = "#if !defined(DECLARED) /* the functions of laws, which run/engine compiles apart */"
+LAWS = "#if !defined(LAWS_APART) /* the functions of laws, which run/engine compiles apart */"
 END_OF_LAWS = "#endif /* of the functions of laws */"
 #: Encloses a function that is printed for run/engine alone; then what tells run/engine of it.
 ENGINE = "#if !defined(ALONE) /* the step alone solves its equations to round-off */"

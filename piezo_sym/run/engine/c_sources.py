@@ -127,7 +127,7 @@ def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -
     head = [
         _numbers_of(layout),
         *([f'#include "{model}.c"'] if lossy else []),
-        "#define DECLARED",
+        "#define LAWS_APART",
         f'#include "{model}_step.c"',
         _prefix(model),
         c_source("law.h"),

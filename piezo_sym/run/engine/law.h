@@ -1,6 +1,6 @@
 /*
  * The functions of a model's laws are compiled apart: an edit of a law leaves what is compiled of all else as it was.
- * Comes after a generated <model>_step.c, on the side that defines these functions, and where DECLARED, on that which
+ * Comes after a generated <model>_step.c, on the side that defines these functions, and where LAWS_APART, on that which
  * calls them.
  */
 #define OF_STATE const real *restrict x
@@ -33,7 +33,7 @@
     EACH_COSTATE(FUNCTION) EACH_BEND(FUNCTION) EACH_PATH(FUNCTION)
 
 #define DECLARATION(name, parameters, given) void MODEL(law_##name) parameters;
-#if defined(DECLARED)
+#if defined(LAWS_APART)
 #define DEFINITION(name, parameters, given) \
     static inline void MODEL(name) parameters { MODEL(law_##name) given; }
 #else
