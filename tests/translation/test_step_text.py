@@ -187,7 +187,7 @@ TOLD = "#endif /* of what tells of co-states */\n"
 PLACES = {
     "piezo_stack": [("_stage\\(", TAKEN), ("_costates\\(", ALONE), ("_slopes\\(", "enum {"),
                     ("_sizes\\(", ENDS), ("piezo_stack_strict", TOLD), ("_give\\(", ENDS)],
-    "stack_maxwell": [("#define PATHS", ENDS), ("_path_parameters\\(", TOLD)],
+    "stack_maxwell": [(r"#define PATHS.*\n.*_path\[", ENDS), ("_path_parameters\\(", TOLD)],
     "amplified_stack": [("#define BENDS", ENDS), ("_bends\\(", TAKEN)],
 }  # fmt: skip
 
