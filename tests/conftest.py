@@ -88,8 +88,7 @@ def _shared_cache(shared_folder):
 #: is copied, whoever asks. `few` are flags for runs of many steps, `flags` for others.
 COMPILES = """
 case "$*" in
-{long}) set -- "$@" {few} ;;
-*/.build-*) set -- "$@" {flags} ;;
+*/.build-*) ;;
 *) exec {real} "$@" ;;
 esac
 PATH=$PATH:{path}
@@ -97,7 +96,11 @@ for word; do
   test "$before" = -o && out=$word
   before=$word
 done
-folder=${{out%/*}}
+folder=${{out%/*}} more="{flags}"
+for model in {long}; do
+  test -f "$folder/$model.h" && more="{few}"
+done
+set -- "$@" $more
 key=$({{ printf '%s\\n' "$@" | sed "s|$folder||"; cat "$folder"/*.[ch]; }} | {digest})
 known={store}/${{key%% *}}
 test -f "$known" && exec cp "$known" "$out"
@@ -116,7 +119,7 @@ def write_compiler(folder, name, shared, flags, few):
         (shared / "compiled").mkdir(exist_ok=True)
         folder.mkdir(exist_ok=True)
         script = COMPILES.format(
-            long=" | ".join(f"*/.build-*/{model}.*" for model in LONG_RUNS),
+            long=" ".join(LONG_RUNS),
             **{"few": few, "flags": flags, "real": FOUND[name]},
             **{"path": os.defpath, "digest": DIGEST, "store": shared / "compiled"},
         )

@@ -8,7 +8,7 @@ import pytest
 
 from piezo_sym.modules import module_of
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers
-from piezo_sym.run.engine.library import UNITS, Sources
+from piezo_sym.run.engine.library import DRIVER, LAWS, Sources
 from piezo_sym.run.engine.records import LONG, ParameterRecords, c_record
 
 STEPS = ("signal", "segment", "run", "tape", "task", "stepper")
@@ -26,11 +26,11 @@ def layout_in_python(structure) -> list[int]:
 
 
 def compiled(folder: Path, sources: Sources, driver: str) -> ctypes.CDLL:
-    for name, text in {**sources.files(), "driver.c": driver}.items():
+    for name, text in {**sources.files(), DRIVER: driver}.items():
         (folder / name).write_text(text, encoding="utf-8")
     file = folder / "layout.so"
     flags = [flag for flag in FLAGS[-1] if flag != "-O2"]
-    files = [path for name in UNITS if (path := folder / name).is_file()]
+    files = [path for name in (LAWS, DRIVER) if (path := folder / name).is_file()]
     build(next(compilers()), flags, files, file)
     return ctypes.CDLL(str(file))
 
@@ -44,7 +44,7 @@ def sources_of(module) -> Sources:
 @pytest.mark.parametrize(("layout", "names"), [("one", STEPS), ("slopes", ("direction",))])
 def test_a_record_has_the_layout_of_c(layout, names, tmp_path):
     module, structures = module_of("piezo_stack"), [c_record(name) for name in names]
-    driver = replace(sources_of(module), layout=layout).files()["driver.c"]
+    driver = replace(sources_of(module), layout=layout).files()[DRIVER]
     for name, structure in zip(names, structures, strict=True):
         fields = [field for field, _ in structure._fields_]
         driver += layout_in_c(f"MODEL({name})", fields, f"layout_{name}")

@@ -20,7 +20,7 @@ from piezo_sym.bench.problem import problem_of
 from piezo_sym.module_cache import load_module
 from piezo_sym.modules import module_of
 from piezo_sym.run import simulate
-from piezo_sym.run.engine.library import Sources
+from piezo_sym.run.engine.library import DRIVER, LAWS, STAGES, Sources
 from tests.benchmarks.ours import run_in_c
 from tests.codegen.c_compilers import COMPILERS, SANITIZING, runtime
 from tests.codegen.test_c_text import STRICT, called
@@ -57,7 +57,7 @@ def test_the_whole_driver_has_no_warning(module, compiler, tmp_path):
     for name, text in Sources(module.NAME, *texts).files().items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     flags = [*STRICT, "-Wno-unused-function"]  # wide.h has functions for laws of other models
-    assert called([*COMPILERS[compiler], *flags, "-c", "driver.c"], tmp_path) == ""
+    assert called([*COMPILERS[compiler], *flags, "-c", DRIVER], tmp_path) == ""
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
@@ -70,8 +70,24 @@ def test_stages_in_vectors_have_no_warning(module, compiler, tmp_path):
         (tmp_path / name).write_text(text, encoding="utf-8")
     without = ["-fno-openmp-simd", "-Wno-unknown-pragmas", "-Wno-psabi"]  # as it is compiled
     for plain in ([], ["-DPLAIN"]):
-        flags = [*STRICT, *without, *plain, "-c", "stages.c"]
+        flags = [*STRICT, *without, *plain, "-c", STAGES]
         assert called([*COMPILERS[compiler], *flags], tmp_path) == ""
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_steps_and_laws_have_no_warning(module, compiler, tmp_path):
+    texts = [
+        Path(module.__file__).with_name(f"{module.NAME}{ending}").read_text()
+        for ending in (".h", ".c", "_step.c")
+    ]
+    flags = ["-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", "-Wno-unknown-pragmas", "-Wno-psabi"]
+    flags += ["-Wno-unused-function", "-Wno-unused-const-variable"]  # of models with more in them
+    for layout, stages in (("one", 4), ("many", 6)):
+        sources = Sources(module.NAME, *texts, stages=stages, layout=layout)
+        for name, text in sources.files().items():
+            (tmp_path / name).write_text(text, encoding="utf-8")
+        for unit in (LAWS, DRIVER):
+            assert called([*COMPILERS[compiler], *flags, "-c", unit], tmp_path) == ""
 
 
 @pytest.mark.some(1)

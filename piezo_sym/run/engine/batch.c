@@ -12,11 +12,13 @@ typedef struct {
 /* Accuracy of rates that only serve to locate a switch, as a fraction of the tolerance. */
 #define SKETCH 0.01
 /*
- * Accuracy of rates whose residuals become heat, as a fraction of the tolerance; where states may be round-off, as at
- * rest, nothing else would move them.
+ * Accuracy of rates whose residuals become heat, as a fraction of the tolerance. Large residuals would scale what
+ * processes book by more than MOST_SCALED, so that steps are solved once more: above RESIDUAL_LOOSE, and where a
+ * state may be mere round-off, it is the smaller fraction.
  */
 #define RESIDUAL 0.1
-#define RESIDUAL_AT_REST 0.03
+#define LOOSE 0.03
+#define RESIDUAL_LOOSE 1e-6
 /* With at least this many switches it may be better to step over kinks. */
 enum { MANY = 8 };
 
@@ -125,7 +127,6 @@ void MODEL(open)(MODEL(batch) *b, const MODEL(task) *task)
 static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
 {
     MODEL(block) *m = &b->m;
-    int rests = 0;
     MODEL(give)(&m->p, run->p, lane);
     m->own = run->p;
 #if defined(LANES)
@@ -135,10 +136,13 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
         LANE(m->x, k, lane) = run->x[k];
         LANE(m->largest, k, lane) = run->largest[k];
         LANE(m->noise, k, lane) = run->noise[k];
-        rests |= run->noise[k] > 0.0;
     }
 #if defined(COSTATES)
-    LANE(&m->allowed, 0, lane) = (rests ? RESIDUAL_AT_REST : RESIDUAL) * b->tolerance / NOISE;
+    double residual = MODEL(lesser)(RESIDUAL * b->tolerance, MODEL(greater)(RESIDUAL_LOOSE, LOOSE * b->tolerance));
+    for (long k = 0; k < m->n; ++k)
+        if (run->noise[k] > 0.0)
+            residual = MODEL(lesser)(residual, LOOSE * b->tolerance);
+    LANE(&m->allowed, 0, lane) = residual / NOISE;
 #endif /* COSTATES */
     for (long k = 0; k < m->booked; ++k) {
         LANE(b->sums, k, lane) = run->ledger[k];

@@ -158,7 +158,7 @@ def stages_source(model: str, lanes: int) -> str:
         f'#include "{model}_step.c"',
         _prefix(model),
     ]
-    rest = ["#else", f"typedef int {model}_has_no_vectors;", "#endif"]
+    rest = ["#else", f"typedef int {model}_has_no_vectors;", "#endif\n"]
     return "\n".join([*head, c_source("at_once.h", "at_once.c"), *rest])
 
 

@@ -48,10 +48,9 @@ from piezo_sym.run.engine.compiler import (
 from piezo_sym.run.module import GeneratedModule
 
 Layout = Literal["one", "many", "lanes", "slopes"]
-#: The files to compile, which include the others. The object of a driver of steps is kept, too: an
-#: edit of a law changes the others alone.
-DRIVER = "driver.c"
-UNITS = ("law.c", DRIVER, "stages.c")
+#: The files to compile, which include the others; no model has such a name. The object of a driver
+#: of steps is kept, too: an edit of a law changes the others alone.
+LAWS, DRIVER, STAGES = "the-laws.c", "the-driver.c", "the-stages.c"
 ENDING = ".dylib" if sys.platform == "darwin" else ".so"
 #: The ending of the file with a library's digest; the prefix of folders in which one is compiled,
 #: and the age [s] at which one is left over from a killed compilation.
@@ -98,18 +97,18 @@ class Sources:
             texts["elimination.c"] = c_source("elimination.c")
             texts |= self._steps()
         else:
-            texts["driver.c"] = functions_source(self.name)
+            texts[DRIVER] = functions_source(self.name)
         return {name: _COMMENT.sub(" ", text) for name, text in texts.items()}
 
     def _steps(self) -> dict[str, str]:
         """Return the files to compile for steps by file name."""
         lossy, head = self.lossy, "" if self.proved else NOT_PROVED
         if self.layout == "slopes":
-            return {"driver.c": head + derivatives_source(self.name, self.stages)}
+            return {DRIVER: head + derivatives_source(self.name, self.stages)}
         driver = steps_source(self.name, self.stages, self.layout, lossy=lossy)
-        texts = {"driver.c": head + driver, "law.c": head + laws_source(self.name, self.layout)}
+        texts = {DRIVER: head + driver, LAWS: head + laws_source(self.name, self.layout)}
         if lanes := stage_lanes(self.stages, self.layout, lossy=lossy):
-            texts["stages.c"] = head + stages_source(self.name, lanes)
+            texts[STAGES] = head + stages_source(self.name, lanes)
         return texts
 
 
@@ -201,7 +200,7 @@ def _flags(sources: Sources, flags: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _key(texts: Iterable[str], compiler: Compiler, flags: tuple[str, ...]) -> str:
-    """Return the name of what is compiled of some texts."""
+    """Return the name of what is compiled of some texts, whatever their files are called."""
     digest = hashlib.sha256()
     for part in (*texts, *compiler.command, compiler.version, *flags, processor()):
         digest.update(part.encode() + b"\0")
@@ -246,22 +245,33 @@ def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: P
     path.parent.mkdir(parents=True, exist_ok=True)
     _clean(path.parent)
     with tempfile.TemporaryDirectory(prefix=BUILD, dir=path.parent) as temporary:
-        folder = Path(temporary)
-        for name, text in sources.files().items():
+        folder, texts = Path(temporary), sources.files()
+        for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
         built, driver = folder / path.name, folder / DRIVER
-        units = [folder / name for name in UNITS if (folder / name).is_file()]
-        if len(units) == 1:
-            build(compiler, flags, units, built)
-        else:
-            key = _key([preprocessed(compiler, flags, driver)], compiler, flags)
-            kept = path.parent.parent / key / f"{sources.name}.o"
-            known = {driver: kept} if _intact(kept) else {}
-            build(compiler, flags, units, built, known)
-            if not known:
+        units = [folder / name for name in (LAWS, DRIVER, STAGES) if name in texts]
+        kept = _kept_driver(sources, compiler, flags, driver, path) if len(units) > 1 else None
+        known = {driver: kept} if kept and _intact(kept) else {}
+        build(compiler, flags, units, built, known)
+        _keep(built, path)
+        if kept and not known:
+            with suppress(OSError):
                 kept.parent.mkdir(exist_ok=True)
                 _keep(driver.with_suffix(".o").rename(folder / kept.name), kept)
-        _keep(built, path)
+
+
+def _kept_driver(
+    sources: Sources, compiler: Compiler, flags: tuple[str, ...], driver: Path, path: Path
+) -> Path | None:
+    """Return where the object of a driver is kept, beside a library's folder; None if nowhere.
+
+    Its name is a hash of the preprocessed text, so that what it does not see may change.
+    """
+    try:
+        text = preprocessed(compiler, flags, driver)
+    except EngineError:  # some compilers do not preprocess
+        return None
+    return path.parent.parent / _key([text], compiler, flags) / f"{sources.name}.o"
 
 
 def _keep(file: Path, path: Path) -> None:

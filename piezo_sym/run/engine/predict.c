@@ -117,7 +117,7 @@ static long MODEL(seek_recorded)(const MODEL(history) *past, MODEL(lane) *l, int
  * Whether a lane's next step recalls a recorded one, which lies likewise after the same switch. `ahead` and `ratio`
  * are where the new step begins and how long it is, in lengths of the recorded one.
  */
-static int MODEL(recalls)(const MODEL(batch) *b, int lane, double *ahead, double *ratio)
+static int MODEL(recalls)(MODEL(batch) *b, int lane, double *ahead, double *ratio)
 {
     const MODEL(history) *const past = &b->past;
     MODEL(lane) *l = b->lane + lane;
