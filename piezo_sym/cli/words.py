@@ -86,10 +86,9 @@ def signal(text: str, where: str, read: Callable[[str, str, str], float] | None 
     given, named = _arguments(name, call["numbers"], value)
     try:
         return SIGNALS[name](*given, **named)
-    except TypeError as error:
-        what = f"{name} does not take {quote(call['numbers'])}"
-        raise UsageError(what, where, spelled(name)) from error
     except UsageError as error:
+        if error.expected.startswith(f"{name}("):
+            error.expected = spelled(name)
         error.put_in(where)
         raise
 
@@ -153,6 +152,9 @@ def numbers(
     text: str, where: str, read: Callable[[str, str], float] = number
 ) -> float | list[float]:
     """Return a number, or a list of them for the lanes of a bank; `read` converts each."""
+    if text.startswith("["):
+        remedy = f"write {text.strip('[]')} without them"
+        raise UsageError(f"{quote(text)} has brackets", where, remedy=remedy)
     values = [read(part, where) for part in text.split(",")]
     return values[0] if len(values) == 1 else values
 
@@ -229,7 +231,11 @@ class Units:
         if not IN_UNIT.fullmatch(text):
             self._assume(where)
         name = where.rpartition(" ")[2]
-        return in_unit(text, where, self._declared.get(name, ""), place or name)
+        try:
+            return in_unit(text, where, self._declared.get(name, ""), place or name)
+        except SpecError as error:
+            error.remedy += "; the header of a .csv may say degC" * ("offset" in error.what)
+            raise
 
     @cached_property
     def _states(self) -> dict[str, str]:

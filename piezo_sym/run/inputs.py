@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from inspect import unwrap
 from itertools import pairwise
 from math import inf, nextafter
 from typing import Any, TypeAlias, final
@@ -187,7 +188,7 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
             f"input '{record.name}' is not given, so it is {default:g} {record.unit}, its default"
         )
         text += ", from here on: the run that goes on had other values; give it again to keep it"
-        warnings.warn(text, InputWarning, stacklevel=5)
+        warnings.warn(text, InputWarning, stacklevel=6)
 
 
 def as_signal(value: object, where: str, start: float = 0.0) -> Signal:
@@ -198,7 +199,7 @@ def as_signal(value: object, where: str, start: float = 0.0) -> Signal:
         return Constant(number(value, where))
     if isinstance(value, tuple | list) and len(value) == 2:
         return read_samples(value[0], value[1], where)
-    if callable(value) and not isinstance(value, type):
+    if callable(value) and not isinstance(unwrap(value), type):  # sine without its numbers
         return InputFunction(value, where, start)
     expected = "a number, (t, values), a function of t or a signal, such as sine(100.0, 50.0)"
     raise UsageError(f"{quote(value)} is no input", where, expected)

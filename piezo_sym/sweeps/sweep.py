@@ -13,6 +13,7 @@ from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from contextlib import ExitStack, closing
 from dataclasses import replace
+from functools import partial
 from inspect import signature
 from math import prod
 from pathlib import Path
@@ -26,7 +27,7 @@ from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.files import path_of
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
-from piezo_sym.run.checks import integer
+from piezo_sym.run.checks import checked_call, integer
 from piezo_sym.run.inputs import InputValue
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
@@ -44,6 +45,7 @@ class SweepWarning(UserWarning):
     """Some runs of a sweep failed; the Dataset says which and why."""
 
 
+@partial(checked_call, name="sweep")
 def sweep(
     model: str | Path | Model,
     *,
@@ -195,4 +197,4 @@ def warn(dataset: xarray.Dataset, plan: Plan) -> None:
     failed = np.flatnonzero(errors != "")
     if failed.size:
         many = f"{failed.size} of {plan.size} runs failed, see 'error'; the first: "
-        warnings.warn(f"{many}{errors[failed[0]]}", SweepWarning, stacklevel=3)
+        warnings.warn(f"{many}{errors[failed[0]]}", SweepWarning, stacklevel=4)
