@@ -19,6 +19,7 @@ from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
 from piezo_sym.run import simulate as run
 from piezo_sym.run.checks import checked_call
+from piezo_sym.run.inputs import warn_given
 from piezo_sym.run.simulate import stages_of
 from piezo_sym.run.stepper import Stepper as Steps
 from piezo_sym.spec.starts import warn_parted
@@ -43,6 +44,7 @@ def of_spec(
     def call(model: Spec, *args: P.args, **given: P.kwargs) -> R:
         module = module_of(model, stages(given))
         warn_parted(model, module, given.get("initial"))
+        warn_given(module, given.get("inputs"))
         try:
             return run(module, *args, **given)
         except UnknownNameError as error:

@@ -5,7 +5,6 @@ inputs and states: ``L=1.2e-3`` is in SI, ``L=1.2mH`` in its own unit.  Output: 
 SI, or an error that names the option.
 """
 
-import json
 import re
 from collections.abc import Callable, Iterable
 from functools import cached_property
@@ -185,8 +184,7 @@ class Units:
 
     Attributes
     ----------
-    assumed : a line for each number that was read in SI, although its declared unit is another,
-        and for each input that no element uses.
+    assumed : a line for each number that was read in SI, although its declared unit is another.
     """
 
     def __init__(self, spec: str) -> None:
@@ -218,13 +216,12 @@ class Units:
 
     def signal(self, text: str, where: str) -> Any:
         """Return a signal, or a number, in its unit or SI."""
-        name = where.rpartition(" ")[2]
-        users = [self._content.get(table) for table in ("elements", "banks", "initial")]
-        used = re.search(rf"\b{re.escape(name)}\b", json.dumps(users, default=str))
-        if name in self._declared and not used:
-            self.assumed.append(f"{name}: no element uses this input")
         if text.startswith("@"):  # or the column of that name would be looked for
-            known_keys({name: text}, self._content.get("inputs") or (), "simulate.inputs")
+            known_keys(
+                {where.rpartition(" ")[2]: text},
+                self._content.get("inputs") or (),
+                "simulate.inputs",
+            )
         return signal(text, where, self._value)
 
     def _value(self, text: str, where: str, place: str) -> float:

@@ -19,11 +19,11 @@ import numpy as np
 from piezo_sym.errors import FileError, PiezoError, UsageError, listing, nearest, quote
 from piezo_sym.files import near_file, path_of
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.samples import Samples, read_samples
+from piezo_sym.run.samples import ZERO_CELSIUS, Samples, read_samples
 
 DELIMITERS, COMMENTS = ",;\t", ("#", "%")
-#: The unit of temperature with an offset in headers, and its zero [K].
-CELSIUS, ZERO_CELSIUS = ("degC", "\N{DEGREE SIGN}C"), 273.15
+#: The unit of temperature with an offset in headers.
+CELSIUS = "degC", "\N{DEGREE SIGN}C"
 HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its unit, t [ms]
 OTHERWISE = re.compile(  # t (ms), t/ms
     r"(?P<name>.*?)\s*(?:\((?P<unit>[^()]+)\)|/\s*(?P<over>[^/()]+))"

@@ -15,6 +15,7 @@ from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, increasing, vector
 from piezo_sym.run.signals import MOST_CORNERS, Signal
 
+ZERO_CELSIUS = 273.15  # [K]
 SLACK = 1e-9  # of the duration: by rounding, samples may span less
 
 

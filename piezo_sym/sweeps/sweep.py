@@ -28,7 +28,7 @@ from piezo_sym.files import path_of
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
 from piezo_sym.run.checks import checked_call, integer
-from piezo_sym.run.inputs import InputValue
+from piezo_sym.run.inputs import InputValue, warn_given
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.simulate import simulate
@@ -133,6 +133,7 @@ def sweep(
     plan = read_plan(module, over, runs, reduce, reduce_by)
     swept = (target.name for _, target in plan.swept() if target.kind == "initial")
     warn_parted(model, module, {**plan.initial, **dict.fromkeys(swept)})
+    warn_given(module, inputs)
     plan, sink = sink_of(plan, module, store, count)
     with ExitStack() as stack:
         if executor is None:

@@ -13,10 +13,11 @@ from piezo_sym import (
     sweep,
 )
 from piezo_sym.cli import run
-from piezo_sym.errors import PiezoError
+from piezo_sym.errors import InputWarning, PiezoError
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.load import parse
+from piezo_sym.sweeps import SweepWarning
 
 SPEC = """
 [model]
@@ -82,6 +83,17 @@ def test_the_sign_of_a_logarithm():
 def test_a_derived_system_knows_its_model():
     with pytest.raises(PiezoError, match=r"is no model; .*; give iphs\.model$"):
         simulate(derive(load("oscillator")), duration=1)
+
+
+def test_a_temperature_in_celsius(capsys):
+    said = "T_e = 20 K is -253.15 degC; 20 degC is 293.15"
+    with pytest.warns(InputWarning, match=f"^{said}$") as warned, pytest.raises(PiezoError):
+        simulate("piezo_stack", duration=1e-3, inputs={"T_e": 20})
+    assert [warning.filename for warning in warned] == [__file__]
+    assert run(["simulate", "piezo_stack", "--duration", "1ms", "-i", "T_e=20"]) == 2
+    assert capsys.readouterr().err.splitlines()[0] == f"piezo-sym: {said}"
+    with pytest.warns(InputWarning, match=said), pytest.warns(SweepWarning):
+        sweep("piezo_stack", over={"d": [1.0]}, duration=1e-3, inputs={"T_e": 20})
 
 
 def test_a_length_with_a_unit(capsys):
