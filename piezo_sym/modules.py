@@ -241,6 +241,7 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
     except ProofError as error:
         command = "piezo-sym generate --allow-unproved"
         error.remedy += f"; or `{command}` writes it all the same, for a run"
+        error.remedy += ", which needs --method LSODA where entropy is consumed"
         raise
     assert found is not None  # a report that proves a module has its texts
     keep_proved(model, report, found)

@@ -61,6 +61,8 @@ MEETS = (
     "; only a law of dissipation may jump: let the two branches have one value there, as "
     "'a if x < b else a + c*(x - b)' does at b"
 )
+#: What to do about a law that gives power out in all of the domain, or for the values of the spec.
+WRONG_SIGN = "; check the sign of the law"
 #: Whether a question is not answered with a proof, and whether an obligation is proved.
 Fails = Callable[[Question], bool]
 Proved = Callable[[Obligation], bool]
@@ -97,6 +99,8 @@ def mending_conditions(
         asked = replace(obligation, questions=questions, sign=about, rests_on=())
         return not within(conditions)(Neg(ONE)) and proved(asked)  # -1 > 0 only in no domain
 
+    if shown(Neg(sign.law), sign.letter):
+        return WRONG_SIGN
     points = spec_points(iphs)
     factor = _of_factor(sign.law, sign.letter, shown)
     if factor and not {*names(factor)} <= frozenset[str]().union(*points):
@@ -112,7 +116,9 @@ def mending_conditions(
     if not conditions:
         return _signed(sign.law, sign.letter, shown)
     texts = [condition_text(sided(c)) for c in conditions]
-    return in_words(texts, _broken(conditions, points), iphs)
+    broken = _broken(conditions, points)
+    turned = any(isinstance(c.left, Neg) for c in broken)  # -d >= 0, where d is above 0
+    return in_words(texts, broken, iphs) + WRONG_SIGN * turned
 
 
 def _broken(conditions: Iterable[Cmp], points: Iterable[Mapping[str, Value]]) -> list[Cmp]:

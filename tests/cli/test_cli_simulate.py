@@ -305,6 +305,7 @@ def test_a_fault_of_the_spec_has_its_name_and_one_of_an_option_has_not(refused, 
     said = refused("simulate", path, "--duration", "1e-3", code=1)
     assert said.startswith("mine.toml: mine.damper: passive is REFUTED")
     assert "`piezo-sym generate --allow-unproved` writes it all the same, for a run" in said
+    assert "for a run, which needs --method LSODA where entropy is consumed" in said
     assert "more REFUTED" not in said
     both = spec_file('"d >= 0", "rho >= 0", "i_0 >= 0", ', '"i_0 >= 0", ')
     said = refused("simulate", both, "--duration", "1e-3", code=1)
