@@ -219,8 +219,12 @@ def _compare(path: Path, data: bytes) -> Iterator[Drift]:
     elif present != data:
         both = [text.decode(errors="replace") for text in (present, data)]
         old, new = (HASH.sub("...", text).splitlines() for text in both)
-        diff = [*difflib.unified_diff(old, new, f"{path} (present)", f"{path} (from the spec)", n=2)]
-        diff += ["the sha256 of its spec differs"] * (HASH.findall(both[0]) != HASH.findall(both[1]))
+        diff = [
+            *difflib.unified_diff(old, new, f"{path} (present)", f"{path} (from the spec)", n=2)
+        ]
+        diff += ["the sha256 of its spec differs"] * (
+            HASH.findall(both[0]) != HASH.findall(both[1])
+        )
         yield Drift(path, DIFFERS, "\n".join(line.rstrip("\n") for line in diff))
 
 
