@@ -69,14 +69,14 @@ class Rest:
         slope = self.search.jacobian(self.x)
         return not np.any(np.abs(x - self.x) > SAME * self.scales(slope, np.linalg.eigvals(slope)))
 
-    def scales(self, slope: FloatArray, eigenvalues: NDArray[np.complex128]) -> FloatArray:
+    def scales(self, slope: FloatArray, eigenvalues: NDArray[np.inexact[Any]]) -> FloatArray:
         """Return the scale of each state (n,); `slope` (n, n) is that of the rates.
 
         That of a momentum is its size in motions in which the other states change by their sizes.
         """
         fastest = float(np.max(np.abs(eigenvalues), initial=0.0)) or 1.0
         heat = self.search.heating_sizes(self.x) / COUNTS
-        return np.maximum.reduce([self.size, heat, np.abs(slope) @ self.size / fastest])
+        return np.asarray(np.maximum.reduce([self.size, heat, np.abs(slope) @ self.size / fastest]))
 
 
 def followed(rest: Rest, search: RestSearch, start: FloatArray) -> Rest:

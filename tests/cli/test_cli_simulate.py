@@ -137,7 +137,7 @@ def test_inputs_come_from_files(call, tmp_path, text, end):
         ("t,a,b\n0,1,2\n1,3,4\n", "has no column 'V_in' beside its times; columns: t, a, b"),
         ("t,V_in\n0,1\n1,x\n", "drive.csv, line 3: 'x' is not a number"),
         ("t,V_in\n0,1\n1e-6,2\n", "samples span 0 s to 1e-06 s; expected samples that cover"),
-        ("t,V_in\n", "0 times and 0 values; expected as many values as times"),
+        ("t,V_in\n", "0 rows of a time and a value; expected at least two rows"),
         ("", "drive.csv: is empty; expected a header line"),
         (None, "drive.csv: cannot be read: No such file"),
     ],
@@ -193,11 +193,11 @@ def test_numbers_are_in_si_or_in_a_unit_of_their_own(call, spec_file):
     plain = call(*words, "--set", "L=1.2e-3", "--input", "V_in=1e2")
     *table, one, other = plain.out.splitlines()
     assert one == "V_in: read in V, though the spec has kV; a number may say its unit: V_in=1.2kV"
-    assert other == "L: read in H, though the spec has mH; a number may say its unit: L=1.2mH"
+    assert other == "L = 1.2e-3 H (spec: 1.0 mH); a number may say its unit: L=1.2mH"
     for L, volts in [("1.2mH", "0.1kV"), ("1200 uH", "100V"), ("1.2mH,1.2e3uH", "1e-1kV")]:
         said = call(*words, "--set", f"L={L}", "--input", f"V_in={volts}")
         assert (said.code, said.out.splitlines()) == (0, table)
-    assert "though" not in call(*words, "--set", "C=5uF").out
+    assert "spec" not in call(*words, "--set", "C=5uF").out
 
 
 def test_times_starts_and_numbers_of_signals_may_have_units(call, spec_file):
