@@ -68,6 +68,8 @@ Fails = Callable[[Question], bool]
 Proved = Callable[[Obligation], bool]
 #: Whether law*letter, or a law without letter, is shown to be >= 0 in the domain.
 Shown = Callable[[Expr, str], bool]
+#: Whether a row is proved where conditions hold besides those of the domain.
+Mended = Callable[[tuple[Cmp, ...]], bool]
 #: A test of positivity where conditions hold besides those of the domain.
 Within = Callable[[Collection[Cmp]], Positive]
 #: For a law with more branches, no conditions on the coefficients of its terms are looked for.
@@ -109,16 +111,20 @@ def mending_conditions(
         return said
     ways = [way for way in _ways(factor, sign, given, within, shown) if way]
     ways.sort(key=lambda way: bool(_broken(way, points)))
-    conditions = next(filter(mended, ways), ())
+    if not (conditions := _fewest(next(filter(mended, ways), ()), mended)):
+        return _signed(sign.law, sign.letter, shown)
+    broken = _broken(conditions, points)
+    turned = any(isinstance(c.left, Neg) for c in broken)  # -d >= 0, where d is above 0
+    said = in_words([condition_text(sided(c)) for c in conditions], broken, iphs)
+    return said + WRONG_SIGN * turned
+
+
+def _fewest(conditions: tuple[Cmp, ...], mended: Mended) -> tuple[Cmp, ...]:
+    """Return conditions that mend a row without those that the others imply."""
     for claim in conditions if len(conditions) > 1 else ():
         rest = tuple(c for c in conditions if c != claim)
         conditions = rest if rest and mended(rest) else conditions
-    if not conditions:
-        return _signed(sign.law, sign.letter, shown)
-    texts = [condition_text(sided(c)) for c in conditions]
-    broken = _broken(conditions, points)
-    turned = any(isinstance(c.left, Neg) for c in broken)  # -d >= 0, where d is above 0
-    return in_words(texts, broken, iphs) + WRONG_SIGN * turned
+    return conditions
 
 
 def _broken(conditions: Iterable[Cmp], points: Iterable[Mapping[str, Value]]) -> list[Cmp]:

@@ -149,9 +149,9 @@ def known_keys(
     return dict(given)
 
 
-def checked_call(run: Callable[P, R], name: str) -> Callable[P, R]:
+def checked_call(run: Callable[P, R], name: str = "") -> Callable[P, R]:
     """Return `run` with arguments checked: `UsageError` says which is unknown or missing."""
-    made = signature(run)
+    made, name = signature(run), name or run.__name__.lower()
 
     def call(*args: P.args, **given: P.kwargs) -> R:
         try:

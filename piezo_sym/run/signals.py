@@ -295,7 +295,6 @@ class Chirp(Signal):
         return 1 / max(self.f_start, self.f_stop)
 
 
-sine, step = checked_call(Sine, "sine"), checked_call(Step, "step")
-ramp, triangle = checked_call(Ramp, "ramp"), checked_call(Triangle, "triangle")
-square, chirp = checked_call(Square, "square"), checked_call(Chirp, "chirp")
+sine, step, ramp = checked_call(Sine), checked_call(Step), checked_call(Ramp)
+triangle, square, chirp = checked_call(Triangle), checked_call(Square), checked_call(Chirp)
 SIGNALS: dict[str, Callable[..., Signal]] = {name: globals()[name] for name in __all__}
