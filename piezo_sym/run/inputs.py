@@ -194,12 +194,13 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
 
 def warn_given(module: GeneratedModule, given: object) -> None:
     """Warn of inputs that no element uses, and of temperatures that are meant in degC."""
+    if not isinstance(given, Mapping):
+        return
     codes = (getattr(function, "__code__", None) for function in vars(module).values())
     used = {word for code in codes if code for word in code.co_varnames}
     defaults = dict(zip((r.name for r in module.INPUTS), module.INPUT_DEFAULTS, strict=True))
-    values = given if isinstance(given, Mapping) else {}
-    for record in (record for record in module.INPUTS if record.name in values):
-        name, value, text = record.name, values[record.name], ""
+    for record in (record for record in module.INPUTS if record.name in given):
+        name, value, text = record.name, given[record.name], ""
         if name not in used:
             text = f"{name}: no element uses this input"
         elif record.unit == "K" and is_number(value) and value < COLD and defaults[name] > ROOM:
