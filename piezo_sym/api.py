@@ -18,7 +18,8 @@ from piezo_sym.errors import UnknownNameError
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
 from piezo_sym.run import simulate as run
-from piezo_sym.run.checks import known_keys
+from piezo_sym.run.checks import checked_call
+from piezo_sym.run.inputs import warn_given
 from piezo_sym.run.simulate import stages_of
 from piezo_sym.run.stepper import Stepper as Steps
 from piezo_sym.spec.starts import warn_parted
@@ -41,9 +42,9 @@ def of_spec(
     """
 
     def call(model: Spec, *args: P.args, **given: P.kwargs) -> R:
-        known_keys(given, options, run.__name__)
         module = module_of(model, stages(given))
         warn_parted(model, module, given.get("initial"))
+        warn_given(module, given.get("inputs"))
         try:
             return run(module, *args, **given)
         except UnknownNameError as error:
@@ -53,13 +54,12 @@ def of_spec(
 
     wrapper: Any = update_wrapper(call, run, updated=())
     first, *others = signature(run).parameters.values()
-    options = tuple(other.name for other in others)
     first = first.replace(name="model", annotation=Spec)
     made = signature(run).replace(parameters=[first, *others])
     if isinstance(run, type):  # it returns what it makes
         made = made.replace(return_annotation=run)
     wrapper.__signature__ = made
-    return call  # type: ignore[return-value]  # the model may be given by name, too
+    return checked_call(wrapper, run.__name__)
 
 
 def _say_joined(error: UnknownNameError, model: Spec) -> None:

@@ -7,6 +7,7 @@ Input: a `Model`.  Output: the files of its generated module, or a list of what 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import asdict, dataclass, replace
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 PROOFS = "{}/proofs.json"
 MISSING, DIFFERS, ENDS = "is missing", "differs from its spec", "has other line ends than \\n"
 LINK, LEFT = "is no regular file or folder", "belongs to no spec given"
+
+#: The hash of a spec, which all its files have.
+HASH = re.compile(r"\b[0-9a-f]{64}\b")
 
 
 @final
@@ -98,6 +102,7 @@ def refuse_unproved(report: Report) -> None:
     except ProofError as error:
         command = "piezo-sym generate --allow-unproved"
         error.remedy += f"; or `{command}` writes it all the same, for a run"
+        error.remedy += ", which needs --method LSODA where entropy is consumed"
         raise
 
 
@@ -237,8 +242,14 @@ def _compare(path: Path, data: bytes) -> Iterator[Drift]:
     elif present.splitlines() == data.splitlines() and present != data:
         yield Drift(path, ENDS)
     elif present != data:
-        old, new = (text.decode(errors="replace").splitlines() for text in (present, data))
-        diff = difflib.unified_diff(old, new, f"{path} (present)", f"{path} (from the spec)", n=2)
+        both = [text.decode(errors="replace") for text in (present, data)]
+        old, new = (HASH.sub("...", text).splitlines() for text in both)
+        diff = [
+            *difflib.unified_diff(old, new, f"{path} (present)", f"{path} (from the spec)", n=2)
+        ]
+        diff += ["the sha256 of its spec differs"] * (
+            HASH.findall(both[0]) != HASH.findall(both[1])
+        )
         yield Drift(path, DIFFERS, "\n".join(line.rstrip("\n") for line in diff))
 
 

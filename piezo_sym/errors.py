@@ -130,7 +130,7 @@ class DriftError(PiezoError):
 
 
 class InputWarning(UserWarning):
-    """Not given: an input that drove the run that is continued, or a state of the same rate."""
+    """An input or a start that may not be what is meant; one that is left out among them."""
 
 
 def legible(text: str) -> str:

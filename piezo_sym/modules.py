@@ -70,14 +70,14 @@ def module_of(spec: str | Path | Model, stages: int | None = None) -> ModuleType
     verdict = verdict_of(module)
     if verdict.startswith(UNPROVED):
         text = f"model '{module.NAME}' is {verdict}: its runs may break a law of thermodynamics"
-        warnings.warn(text, ModuleWarning, stacklevel=3)
+        warnings.warn(text, ModuleWarning, stacklevel=4)
     elif not _matches_folder(module):
         path, again = path_text(GENERATED / module.NAME), _command(spec)
         text = (
             f"{path} is not what the spec generates and is not used; replace it by `{again}`, "
             "or give the spec another name"
         )
-        warnings.warn(text, ModuleWarning, stacklevel=3)
+        warnings.warn(text, ModuleWarning, stacklevel=4)
     return module
 
 
@@ -103,7 +103,8 @@ def _of_model(model: Model, stages: int | None) -> ModuleType:
 
     if not isinstance(model, Model):
         expected = "the name of a shipped spec, the path of a spec file, or a Model"
-        raise UsageError(f"{quote(model)} is no model", "model", expected)
+        remedy = "give iphs.model" * isinstance(getattr(model, "model", None), Model)
+        raise UsageError(f"{quote(model)} is no model", "model", expected, remedy)
     if found := _available(model.name, model.sha256):
         if 0.0 in model.flatten().initial.values():  # the hash leaves out what is 0
             _check_derivation(model)
@@ -154,7 +155,7 @@ def _digest(content: dict[str, Any]) -> str:
 
 def _command(spec: str | Path | Model) -> str:
     if not isinstance(spec, str | Path):
-        return f"piezo_sym.generate(model) for '{spec.name}'"
+        return "piezo_sym.generate(model)"
     return f"piezo-sym generate {spec if str(spec) in shipped() else find(spec)}"
 
 

@@ -77,11 +77,13 @@ class OperatingPoint:
     stable: bool
     undetermined: tuple[str, ...]
     after: float
+    _shown: tuple[Mapping[str, LaneValue], Mapping[str, float]]  # initial, outputs; round-off is 0
 
     def __repr__(self) -> str:
         """Return states, outputs, temperatures, stability, which rest it is, and what is open."""
-        states = [f"{name} = {_digits(value)}" for name, value in self.initial.items()]
-        shown = {**self.outputs, **{f"T_{body}": T for body, T in self.temperatures.items()}}
+        initial, outputs = self._shown
+        states = [f"{name} = {_digits(value)}" for name, value in initial.items()]
+        shown = {**outputs, **{f"T_{body}": T for body, T in self.temperatures.items()}}
         values = ", ".join(f"{name} = {value:.6g}" for name, value in shown.items())
         values = f"{listing(states, MOST_SHOWN)}; {values}"
         free = f"; history decides: {listing(self.undetermined, MOST_SHOWN)}"
@@ -200,17 +202,18 @@ def _described(rest: Rest, parameters: Mapping[str, LaneValue], held: list[str])
     for name in held:
         body = [record.name for record in module.BODIES].index(name)
         holding[name] = -temperatures[name] * float(rates[entropy_row(module, p, x, body)])
-    jacobian = search.jacobian(x)[np.ix_(search.free, search.free)]
-    eigenvalues = np.linalg.eigvals(jacobian)
+    jacobian = search.jacobian(x)
+    eigenvalues = np.linalg.eigvals(jacobian[np.ix_(search.free, search.free)])
     margin = ROUND_OFF * float(np.max(np.abs(eigenvalues), initial=0.0))
-    outputs = by_name(module.OUTPUTS, p, module.outputs(x, u, p))
+    y = np.asarray(module.outputs(x, u, p))
+    initial, outputs = _named(module, p, x, y)
     return OperatingPoint(
         inputs=by_name(module.INPUTS, p, u),
-        initial=by_name(module.STATES, p, x),
+        initial=initial,
         x=x,
         u=u,
         parameters=parameters,
-        outputs={f"y_{port}": y for port, y in outputs.items()},
+        outputs=outputs,
         temperatures=temperatures,
         holding=holding,
         eigenvalues=eigenvalues.astype(complex),
@@ -219,4 +222,23 @@ def _described(rest: Rest, parameters: Mapping[str, LaneValue], held: list[str])
             row_name(module.STATES, p, row) for row in np.flatnonzero(open_).tolist()
         ),
         after=rest.after,
+        _shown=_named(module, p, *_without_round_off(rest, y, rest.scales(jacobian, eigenvalues))),
     )
+
+
+def _named(
+    module: GeneratedModule, p: Any, x: FloatArray, y: FloatArray
+) -> tuple[dict[str, LaneValue], dict[str, float]]:
+    """Return states and outputs by name."""
+    outputs = {f"y_{port}": value for port, value in by_name(module.OUTPUTS, p, y).items()}
+    return by_name(module.STATES, p, x), outputs
+
+
+def _without_round_off(
+    rest: Rest, y: FloatArray, scales: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the state (n,) and the outputs y (ports,), with 0 for round-off of the scales (n,)."""
+    search, x, noise = rest.search, rest.x, ROUND_OFF * scales
+    moved = search.module.outputs(x[:, None] + np.diag(noise), search.u, search.system.parameters)
+    least = np.abs(moved - y[:, None]).sum(axis=1)
+    return np.where(np.abs(x) > noise, x, 0.0), np.where(np.abs(y) > least, y, 0.0)

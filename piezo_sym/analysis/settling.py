@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Any, final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from piezo_sym.analysis.rest import COUNTS, ROUND_OFF, RestSearch
 from piezo_sym.run import simulate
@@ -64,15 +65,18 @@ class Rest:
         return size
 
     def is_at(self, x: FloatArray) -> bool:
-        """Return whether the state x (n,) is this rest, apart from motions too small to slip.
-
-        The size of a momentum is that in motions in which the other states change by their sizes.
-        """
+        """Return whether the state x (n,) is this rest, apart from motions too small to slip."""
         slope = self.search.jacobian(self.x)
-        fastest = float(np.max(np.abs(np.linalg.eigvals(slope)), initial=0.0)) or 1.0
+        return not np.any(np.abs(x - self.x) > SAME * self.scales(slope, np.linalg.eigvals(slope)))
+
+    def scales(self, slope: FloatArray, eigenvalues: NDArray[np.inexact[Any]]) -> FloatArray:
+        """Return the scale of each state (n,); `slope` (n, n) is that of the rates.
+
+        That of a momentum is its size in motions in which the other states change by their sizes.
+        """
+        fastest = float(np.max(np.abs(eigenvalues), initial=0.0)) or 1.0
         heat = self.search.heating_sizes(self.x) / COUNTS
-        size = np.maximum.reduce([self.size, heat, np.abs(slope) @ self.size / fastest])
-        return not np.any(np.abs(x - self.x) > SAME * size)
+        return np.asarray(np.maximum.reduce([self.size, heat, np.abs(slope) @ self.size / fastest]))
 
 
 def followed(rest: Rest, search: RestSearch, start: FloatArray) -> Rest:

@@ -102,7 +102,7 @@ def units() -> None:
     title = "Units, each with SI prefixes: uF, mm, kV"
     print_table(title, ("unit", "name", "in SI"), known_units())
     typer.echo("Joined by * and /, with powers: N*s/m, m**2, kg/m**3, N/(m/s)**(1/2), 1 (none).")
-    typer.echo("No offsets: a temperature is given in K.")
+    typer.echo("No offsets: a temperature is given in K; headers of .csv files may say degC.")
 
 
 def schema() -> None:

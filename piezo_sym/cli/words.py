@@ -5,7 +5,6 @@ inputs and states: ``L=1.2e-3`` is in SI, ``L=1.2mH`` in its own unit.  Output: 
 SI, or an error that names the option.
 """
 
-import json
 import re
 from collections.abc import Callable, Iterable
 from functools import cached_property
@@ -86,10 +85,9 @@ def signal(text: str, where: str, read: Callable[[str, str, str], float] | None 
     given, named = _arguments(name, call["numbers"], value)
     try:
         return SIGNALS[name](*given, **named)
-    except TypeError as error:
-        what = f"{name} does not take {quote(call['numbers'])}"
-        raise UsageError(what, where, spelled(name)) from error
     except UsageError as error:
+        if error.expected.startswith(f"{name}("):
+            error.expected = spelled(name)
         error.put_in(where)
         raise
 
@@ -153,6 +151,9 @@ def numbers(
     text: str, where: str, read: Callable[[str, str], float] = number
 ) -> float | list[float]:
     """Return a number, or a list of them for the lanes of a bank; `read` converts each."""
+    if text.startswith("["):
+        remedy = f"write {text.strip('[]')} without them"
+        raise UsageError(f"{quote(text)} has brackets", where, remedy=remedy)
     values = [read(part, where) for part in text.split(",")]
     return values[0] if len(values) == 1 else values
 
@@ -183,8 +184,7 @@ class Units:
 
     Attributes
     ----------
-    assumed : a line for each number that was read in SI, although its declared unit is another,
-        and for each input that no element uses.
+    assumed : a line for each number that was read in SI, although its declared unit is another.
     """
 
     def __init__(self, spec: str) -> None:
@@ -193,7 +193,7 @@ class Units:
 
     def numbers(self, text: str, where: str) -> float | list[float]:
         """Read a number, or one per lane of a bank, each with its unit or in SI."""
-        return self._numbers(text, where, lambda name: self._declared.get(name, ""))
+        return self._numbers(text, where, self._unit)
 
     def initial(self, text: str, where: str) -> float | list[float]:
         """Read a state's initial value, or one per lane of a bank, with its unit or in SI."""
@@ -201,7 +201,7 @@ class Units:
 
     def _numbers(self, text: str, where: str, unit_of: Callable[[str], str]) -> float | list[float]:
         if not any(map(IN_UNIT.fullmatch, text.split(","))):
-            self._assume(where)
+            self._assume(where, text)
             return numbers(text, where)
         name = where.rpartition(" ")[2]
         unit = "1" if name.endswith("_count") else unit_of(name)
@@ -216,20 +216,23 @@ class Units:
 
     def signal(self, text: str, where: str) -> Any:
         """Return a signal, or a number, in its unit or SI."""
-        name = where.rpartition(" ")[2]
-        users = [self._content.get(table) for table in ("elements", "banks", "initial")]
-        used = re.search(rf"\b{re.escape(name)}\b", json.dumps(users, default=str))
-        if name in self._declared and not used:
-            self.assumed.append(f"{name}: no element uses this input")
         if text.startswith("@"):  # or the column of that name would be looked for
-            known_keys({name: text}, self._content.get("inputs") or (), "simulate.inputs")
+            known_keys(
+                {where.rpartition(" ")[2]: text},
+                self._content.get("inputs") or (),
+                "simulate.inputs",
+            )
         return signal(text, where, self._value)
 
     def _value(self, text: str, where: str, place: str) -> float:
         if not IN_UNIT.fullmatch(text):
             self._assume(where)
         name = where.rpartition(" ")[2]
-        return in_unit(text, where, self._declared.get(name, ""), place or name)
+        try:
+            return in_unit(text, where, self._unit(name), place or name)
+        except SpecError as error:
+            error.remedy += "; the header of a .csv may say degC" * ("offset" in error.what)
+            raise
 
     @cached_property
     def _states(self) -> dict[str, str]:
@@ -249,12 +252,16 @@ class Units:
             return load(self._spec).flatten()
 
     @cached_property
-    def _declared(self) -> dict[str, str]:
-        """The unit of each parameter and input that has one in the spec."""
+    def _entries(self) -> dict[str, dict[str, Any]]:
+        """What the spec says of each parameter and input."""
         tables = (self._content.get(table) for table in ("parameters", "inputs"))
         entries = {k: v for table in tables if isinstance(table, dict) for k, v in table.items()}
-        units = {k: v.get("unit") for k, v in entries.items() if isinstance(v, dict)}
-        return {name: unit for name, unit in units.items() if isinstance(unit, str)}
+        return {name: entry for name, entry in entries.items() if isinstance(entry, dict)}
+
+    def _unit(self, name: str) -> str:
+        """Return the unit of a parameter or input in the spec, or ''."""
+        unit = self._entries.get(name, {}).get("unit", "")
+        return unit if isinstance(unit, str) else ""
 
     @cached_property
     def _content(self) -> dict[str, Any]:
@@ -267,14 +274,15 @@ class Units:
                 content = self._flat.model_dump()
         return content
 
-    def _assume(self, where: str) -> None:
+    def _assume(self, where: str, text: str = "") -> None:
         from piezo_sym.expressions.units import parse_unit
 
         name = where.rpartition(" ")[2]
-        if (declared := self._declared.get(name)) is None:
-            return
-        unit = parse_unit(declared, f"unit of {quote(name)}")
+        declared, value = self._unit(name), self._entries.get(name, {}).get("value")
+        unit = parse_unit(declared or "1", f"unit of {quote(name)}")
         if unit.factor != 1:
             line = f"{name}: read in {unit.si}, though the spec has {declared}"
+            if value is not None:
+                line = f"{name} = {text} {unit.si} (spec: {value} {declared})"
             line += f"; a number may say its unit: {name}=1.2{declared}"
             self.assumed += [line] * (line not in self.assumed)

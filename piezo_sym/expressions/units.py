@@ -242,7 +242,7 @@ def _meant(name: str, text: str) -> str:
     for prefix, root, _ in (unit for unit in alike if unit[1] in UNITS):
         symbol = str(_registry().get_symbol(prefix + root)).translate(ASCII)
         return f"did you mean {quote(symbol)}?"
-    return nearest(name, COMMON)
+    return nearest(name, (*COMMON, *filter(_is_common, [name[1:]])))
 
 
 def _is_common(name: str) -> bool:

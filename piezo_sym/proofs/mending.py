@@ -61,11 +61,15 @@ MEETS = (
     "; only a law of dissipation may jump: let the two branches have one value there, as "
     "'a if x < b else a + c*(x - b)' does at b"
 )
+#: What to do about a law that gives power out in all of the domain, or for the values of the spec.
+WRONG_SIGN = "; check the sign of the law"
 #: Whether a question is not answered with a proof, and whether an obligation is proved.
 Fails = Callable[[Question], bool]
 Proved = Callable[[Obligation], bool]
 #: Whether law*letter, or a law without letter, is shown to be >= 0 in the domain.
 Shown = Callable[[Expr, str], bool]
+#: Whether a row is proved where conditions hold besides those of the domain.
+Mended = Callable[[tuple[Cmp, ...]], bool]
 #: A test of positivity where conditions hold besides those of the domain.
 Within = Callable[[Collection[Cmp]], Positive]
 #: For a law with more branches, no conditions on the coefficients of its terms are looked for.
@@ -97,6 +101,8 @@ def mending_conditions(
         asked = replace(obligation, questions=questions, sign=about, rests_on=())
         return not within(conditions)(Neg(ONE)) and proved(asked)  # -1 > 0 only in no domain
 
+    if shown(Neg(sign.law), sign.letter):
+        return WRONG_SIGN
     points = spec_points(iphs)
     factor = _of_factor(sign.law, sign.letter, shown)
     if factor and not {*names(factor)} <= frozenset[str]().union(*points):
@@ -105,14 +111,20 @@ def mending_conditions(
         return said
     ways = [way for way in _ways(factor, sign, given, within, shown) if way]
     ways.sort(key=lambda way: (bool(_broken(way, points)), *_effort(way, given)))
-    conditions = next(filter(mended, ways), ())
+    if not (conditions := _fewest(next(filter(mended, ways), ()), mended)):
+        return _signed(sign.law, sign.letter, shown)
+    broken = _broken(conditions, points)
+    turned = any(isinstance(c.left, Neg) for c in broken)  # -d >= 0, where d is above 0
+    said = in_words([condition_text(sided(c)) for c in conditions], broken, iphs)
+    return said + WRONG_SIGN * turned
+
+
+def _fewest(conditions: tuple[Cmp, ...], mended: Mended) -> tuple[Cmp, ...]:
+    """Return conditions that mend a row without those that the others imply."""
     for claim in conditions if len(conditions) > 1 else ():
         rest = tuple(c for c in conditions if c != claim)
         conditions = rest if rest and mended(rest) else conditions
-    if not conditions:
-        return _signed(sign.law, sign.letter, shown)
-    texts = [condition_text(sided(c)) for c in conditions]
-    return in_words(texts, _broken(conditions, points), iphs)
+    return conditions
 
 
 def _effort(conditions: Collection[Cmp], given: Collection[str]) -> tuple[bool, bool]:

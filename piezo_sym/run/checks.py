@@ -5,11 +5,13 @@ or a `UsageError` that names the argument.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from functools import update_wrapper
+from inspect import signature
 from math import isfinite, nan
 from numbers import Integral, Real
-from typing import TypeAlias
+from typing import ParamSpec, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,8 @@ from numpy.typing import NDArray
 from piezo_sym.errors import PiezoError, UnknownNameError, UsageError, nearest, quote
 
 FloatArray: TypeAlias = NDArray[np.float64]
+P = ParamSpec("P")
+R = TypeVar("R")
 
 #: The types of truth values, which Python and NumPy take for numbers.
 BOOLS = frozenset({bool, np.bool_})
@@ -24,6 +28,15 @@ BOOLS = frozenset({bool, np.bool_})
 SHARED = re.compile(r"^(simulate|operating_point|periodic_steady_state)\.")
 #: Arguments in seconds.
 TIMES = frozenset({"duration", "step", "t0"})
+#: What to write for arguments that have no default.
+EXAMPLES = {
+    "duration": "0.1",
+    "step": "1e-4",
+    "over": "{'d': [300.0, 400.0]}",
+    "inputs": "{'V_in': sine(100.0, 50.0)}",
+    "frequency": "50.0",
+    "frequencies": "(10.0, 100.0)",
+}
 #: The smallest duration, temperature or frequency: fractions of a smaller one underflow.
 LEAST = 1e-100
 #: The most lanes or samples: the results of more fit into no memory.
@@ -134,6 +147,31 @@ def known_keys(
             unknown.name = str(name)
             raise unknown
     return dict(given)
+
+
+def checked_call(run: Callable[P, R], name: str = "") -> Callable[P, R]:
+    """Return `run` with arguments checked: `UsageError` says which is unknown or missing."""
+    made, name = signature(run), name or run.__name__.lower()
+
+    def call(*args: P.args, **given: P.kwargs) -> R:
+        try:
+            made.bind(*args, **given)
+        except TypeError as error:
+            known_keys(given, made.parameters, name)
+            what, where, words = str(error), name, dict[str, str]()
+            for p in made.parameters.values():
+                if p.default is p.empty and p.kind is not p.VAR_KEYWORD:
+                    words[p.name] = p.name
+                    if p.kind is p.KEYWORD_ONLY:
+                        words[p.name] += f"={EXAMPLES[p.name]}"
+            with suppress(TypeError):
+                had = made.bind_partial(*args, **given).arguments
+                what, where = "is missing", f"{name}.{next(w for w in words if w not in had)}"
+            raise UsageError(what, where, f"{name}({', '.join(words.values())})") from None
+        return run(*args, **given)
+
+    call.__name__ = call.__qualname__ = name
+    return update_wrapper(call, run, ("__module__", "__doc__", "__annotations__"), ())
 
 
 @contextmanager

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import UsageError, listing, nearest, quote
+from piezo_sym.errors import UsageError, listing, nearest, quote, similar
 from piezo_sym.run.checks import FloatArray, is_vector
 from piezo_sym.run.module import (
     GeneratedModule,
@@ -273,7 +273,8 @@ def element_remedy(output: str, names: tuple[str, ...]) -> str:
     known = [name.rpartition(".") for name in names]
     if quantities := [quantity for other, _, quantity in known if other == element]:
         return f"'{element}' has {listing(quantities)}"
-    return nearest(output, (*dict.fromkeys(other for other, _, _ in known), *names))
+    elements = [*dict.fromkeys(other for other, _, _ in known)]
+    return nearest(output, [*elements, *names] if similar(output, names) else elements)
 
 
 def element_variables(

@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from inspect import unwrap
 from itertools import pairwise
 from math import inf, nextafter
 from typing import Any, TypeAlias, final
@@ -20,12 +21,13 @@ from piezo_sym.errors import InputWarning, UsageError, quote
 from piezo_sym.run.checks import FloatArray, is_number, known_keys, number
 from piezo_sym.run.functions import InputFunction
 from piezo_sym.run.module import GeneratedModule, names_elsewhere
-from piezo_sym.run.samples import Samples, read_samples
+from piezo_sym.run.samples import ZERO_CELSIUS, Samples, read_samples
 from piezo_sym.run.signals import Constant, Signal
 
 InputValue: TypeAlias = float | Signal | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
 
 CLOSE = 1e-12  # fraction of the end time: breaks closer than this are merged
+COLD, ROOM = 100.0, 200.0  # temperatures [K] below and above which degC may be meant for K
 LEAST_JUMP = 1e-6  # of an input's size nearby: smaller differences are round-off of a corner
 
 
@@ -187,7 +189,25 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
             f"input '{record.name}' is not given, so it is {default:g} {record.unit}, its default"
         )
         text += ", from here on: the run that goes on had other values; give it again to keep it"
-        warnings.warn(text, InputWarning, stacklevel=5)
+        warnings.warn(text, InputWarning, stacklevel=6)
+
+
+def warn_given(module: GeneratedModule, given: object) -> None:
+    """Warn of inputs that no element uses, and of temperatures that are meant in degC."""
+    if not isinstance(given, Mapping):
+        return
+    codes = (getattr(function, "__code__", None) for function in vars(module).values())
+    used = {word for code in codes if code for word in code.co_varnames}
+    defaults = dict(zip((r.name for r in module.INPUTS), module.INPUT_DEFAULTS, strict=True))
+    for record in (record for record in module.INPUTS if record.name in given):
+        name, value, text = record.name, given[record.name], ""
+        if name not in used:
+            text = f"{name}: no element uses this input"
+        elif record.unit == "K" and is_number(value) and value < COLD and defaults[name] > ROOM:
+            text = f"{name} = {value:g} K is {value - ZERO_CELSIUS:g} degC; "
+            text += f"{value:g} degC is {value + ZERO_CELSIUS:g}"
+        if text:
+            warnings.warn(text, InputWarning, stacklevel=4)
 
 
 def as_signal(value: object, where: str, start: float = 0.0) -> Signal:
@@ -198,7 +218,7 @@ def as_signal(value: object, where: str, start: float = 0.0) -> Signal:
         return Constant(number(value, where))
     if isinstance(value, tuple | list) and len(value) == 2:
         return read_samples(value[0], value[1], where)
-    if callable(value) and not isinstance(value, type):
+    if callable(value) and not isinstance(unwrap(value), type):  # sine without its numbers
         return InputFunction(value, where, start)
     expected = "a number, (t, values), a function of t or a signal, such as sine(100.0, 50.0)"
     raise UsageError(f"{quote(value)} is no input", where, expected)

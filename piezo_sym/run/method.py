@@ -97,4 +97,4 @@ def _has_c(module: GeneratedModule) -> bool:
 def _warn(name: str, why: str) -> None:
     """Warn that a model runs in NumPy, once in a process."""
     text = f"model '{name}' runs by {FALLBACK} in NumPy, not compiled by {METHOD}: {why}"
-    warnings.warn(text, EngineWarning, stacklevel=5)
+    warnings.warn(text, EngineWarning, stacklevel=6)

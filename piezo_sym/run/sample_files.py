@@ -19,15 +19,18 @@ import numpy as np
 from piezo_sym.errors import FileError, PiezoError, UsageError, listing, nearest, quote
 from piezo_sym.files import near_file, path_of
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.samples import Samples, read_samples
+from piezo_sym.run.samples import ZERO_CELSIUS, Samples, read_samples
 
 DELIMITERS, COMMENTS = ",;\t", ("#", "%")
-#: The unit of temperature with an offset in headers, and its zero [K].
-CELSIUS, ZERO_CELSIUS = ("degC", "\N{DEGREE SIGN}C"), 273.15
+#: The unit of temperature with an offset in headers.
+CELSIUS = "degC", "\N{DEGREE SIGN}C"
 HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its unit, t [ms]
 OTHERWISE = re.compile(  # t (ms), t/ms
     r"(?P<name>.*?)\s*(?:\((?P<unit>[^()]+)\)|/\s*(?P<over>[^/()]+))"
 )
+#: What stands between groups of digits: 1'000.
+GROUPS = re.compile(r"(?<=\d)[\s'_\N{RIGHT SINGLE QUOTATION MARK}](?=\d{3})")
+LEAVE_OUT = "delete the line: samples are joined by straight lines"
 AT_ENTRY = re.compile(r"at entry (\d+)")
 #: Endings of names that are meant as units.
 TIMES, VALUES = ("ns", "us", "ms", "min"), ("mV", "kV", "uA", "mA", "um", "mm", "mN", "kN", "degC")
@@ -250,7 +253,10 @@ def _cell(
         remedy = "units go into the header: t [ms]" if line == 2 and text[:1].isalpha() else ""
         remedy = "write decimals with a point" if _is_number(text.replace(",", ".")) else remedy
         remedy = f"delete lines that begin with '{text[0]}'" if text[:1] in COMMENTS else remedy
+        plain = GROUPS.sub("", text)
+        remedy = f"write {plain}" if plain != text and _is_number(plain) else remedy
+        remedy = remedy if text else LEAVE_OUT
         raise FileError(what, where, "a number like 1.5e-3", remedy) from cause
     if not isfinite(value):
-        raise FileError(f"{quote(text)} is not finite{column}", where, "a finite number")
+        raise FileError(f"{quote(text)} is not finite{column}", where, "a finite number", LEAVE_OUT)
     return value

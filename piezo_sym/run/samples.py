@@ -15,6 +15,7 @@ from piezo_sym.errors import UsageError
 from piezo_sym.run.checks import FloatArray, increasing, vector
 from piezo_sym.run.signals import MOST_CORNERS, Signal
 
+ZERO_CELSIUS = 273.15  # [K]
 SLACK = 1e-9  # of the duration: by rounding, samples may span less
 
 
@@ -99,6 +100,8 @@ def read_samples(times: object, values: object, where: str) -> Samples:
     t = increasing(t, f"{where}.times")
     x = vector(values, f"{where}.values")
     if t.size != x.size or t.size < 2:
-        what = f"{t.size} times and {x.size} values"
-        raise UsageError(what, where, "as many values as times, two at least")
+        rows = f"{t.size} row{'s' * (t.size != 1)} of a time and a value", "at least two rows"
+        sizes = f"{t.size} times and {x.size} values", "as many values as times"
+        what, expected = rows if t.size == x.size else sizes
+        raise UsageError(what, where, expected)
     return Samples(t, x)

@@ -12,7 +12,7 @@ from typing import ClassVar, final
 import numpy as np
 
 from piezo_sym.errors import UsageError
-from piezo_sym.run.checks import FloatArray, number, positive, vector
+from piezo_sym.run.checks import FloatArray, checked_call, number, positive, vector
 
 #: The signals that `piezo_sym.run` and the command line offer.
 __all__ = ["chirp", "ramp", "sine", "square", "step", "triangle"]
@@ -295,5 +295,6 @@ class Chirp(Signal):
         return 1 / max(self.f_start, self.f_stop)
 
 
-sine, step, ramp, triangle, square, chirp = Sine, Step, Ramp, Triangle, Square, Chirp
+sine, step, ramp = checked_call(Sine), checked_call(Step), checked_call(Ramp)
+triangle, square, chirp = checked_call(Triangle), checked_call(Square), checked_call(Chirp)
 SIGNALS: dict[str, Callable[..., Signal]] = {name: globals()[name] for name in __all__}

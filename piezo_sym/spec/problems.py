@@ -6,6 +6,7 @@ lines of the same kind, its notes, as there are other faults.
 """
 
 import json
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any, get_args
@@ -30,6 +31,8 @@ NEEDED = {  # examples of keys whose name alone does not say what to write
     "unit": 'unit = "N/m", say; unit = "1" where there is none',
     "value": "value = 1.0, or a list of one per lane",
 }
+#: A number in quotes, with a point or a comma.
+NUMBER = re.compile(r"\s*[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?\s*")
 #: The kind of a body that takes heat.
 BODY = "thermal_mass"
 #: The keys for the nodes of an element, each taken for the other.
@@ -148,6 +151,9 @@ def _problem(detail: ErrorDetails, spec: Mapping[str, Any]) -> SpecError:
             name = value[0] if isinstance(value, list) and value else "spring"
             expected = ENTRIES[table].format(value=_number(value), where=where, name=name)
             return SpecError(f"{quote(value)} does not fit", where, expected)
+        case "value_error" if isinstance(value, str) and NUMBER.fullmatch(value):
+            remedy = f"write {value.replace(',', '.').strip()}, with a point and without quotes"
+            return SpecError(f"{quote(value)} is a text", where, _expected(detail), remedy)
     return SpecError(f"{quote(value)} does not fit", where, _expected(detail))
 
 

@@ -23,7 +23,7 @@ def warn_parted(model: "str | Path | Model", module: Any, initial: object) -> No
     if all(r.name in given or r.unit not in units for r in module.STATES):
         return
     for text in _parted(_groups(model, module.SPEC_SHA256), given):
-        warnings.warn(text, InputWarning, stacklevel=3)
+        warnings.warn(text, InputWarning, stacklevel=4)
 
 
 @lru_cache(maxsize=64)

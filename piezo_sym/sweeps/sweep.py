@@ -13,6 +13,7 @@ from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from contextlib import ExitStack, closing
 from dataclasses import replace
+from functools import partial
 from inspect import signature
 from math import prod
 from pathlib import Path
@@ -26,8 +27,8 @@ from piezo_sym.errors import UsageError, nearest, quote
 from piezo_sym.files import path_of
 from piezo_sym.modules import module_of
 from piezo_sym.progress import progress_of
-from piezo_sym.run.checks import integer
-from piezo_sym.run.inputs import InputValue
+from piezo_sym.run.checks import checked_call, integer
+from piezo_sym.run.inputs import InputValue, warn_given
 from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.simulate import simulate
@@ -44,6 +45,7 @@ class SweepWarning(UserWarning):
     """Some runs of a sweep failed; the Dataset says which and why."""
 
 
+@partial(checked_call, name="sweep")
 def sweep(
     model: str | Path | Model,
     *,
@@ -131,6 +133,7 @@ def sweep(
     plan = read_plan(module, over, runs, reduce, reduce_by)
     swept = (target.name for _, target in plan.swept() if target.kind == "initial")
     warn_parted(model, module, {**plan.initial, **dict.fromkeys(swept)})
+    warn_given(module, inputs)
     plan, sink = sink_of(plan, module, store, count)
     with ExitStack() as stack:
         if executor is None:
@@ -195,4 +198,4 @@ def warn(dataset: xarray.Dataset, plan: Plan) -> None:
     failed = np.flatnonzero(errors != "")
     if failed.size:
         many = f"{failed.size} of {plan.size} runs failed, see 'error'; the first: "
-        warnings.warn(f"{many}{errors[failed[0]]}", SweepWarning, stacklevel=3)
+        warnings.warn(f"{many}{errors[failed[0]]}", SweepWarning, stacklevel=4)

@@ -75,6 +75,8 @@ def test_an_edited_text_of_c_is_not_compiled(model, ending):
     path, *_ = generate(model)
     edited = path.with_name(f"piezo_stack{ending}")
     edited.write_text(f"{edited.read_text()}\n/* edited */\n")
+    with pytest.warns(ModuleWarning, match=r"replace it by `piezo_sym.generate\(model\)`, or"):
+        module_of(model)
     with pytest.warns(ModuleWarning, match="replace it by `piezo-sym generate piezo_stack`"):
         module = module_of("piezo_stack")
     assert Path(module.__file__) == COMMITTED

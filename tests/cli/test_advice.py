@@ -2,12 +2,22 @@
 
 import pytest
 
-from piezo_sym import Stepper, linearize, operating_point, simulate
+from piezo_sym import (
+    Stepper,
+    derive,
+    linearize,
+    load,
+    operating_point,
+    periodic_steady_state,
+    simulate,
+    sweep,
+)
 from piezo_sym.cli import run
-from piezo_sym.errors import PiezoError
+from piezo_sym.errors import InputWarning, PiezoError
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.load import parse
+from piezo_sym.sweeps import SweepWarning
 
 SPEC = """
 [model]
@@ -51,6 +61,39 @@ def test_a_name_that_is_not_declared():
 def test_a_name_that_is_nearly_one():
     with pytest.raises(PiezoError, match="did you mean 'T_0'"):
         parse(SPEC.replace("LAW", "t_0*v"))
+
+
+def test_a_letter_written_as_a_word():
+    with pytest.raises(PiezoError, match=r"did you mean 'v'\? else declare it in \[parameters\]"):
+        parse(SPEC.replace("LAW", "m*vel"))
+
+
+@pytest.mark.parametrize("written", ["60,0", "60.0"])
+def test_a_number_in_quotes(written):
+    with pytest.raises(PiezoError) as error:
+        parse(SPEC.replace("value = 1.0", f'value = "{written}"'))
+    assert error.value.remedy == "write 60.0, with a point and without quotes"
+
+
+def test_the_sign_of_a_logarithm():
+    with pytest.raises(PiezoError, match=r"values of its parameters, and the sign inside log$"):
+        parse(SPEC.replace("LAW", "m*v") + '[initial]\nS_body = "log(-T_0/T_0)"\n')
+
+
+def test_a_derived_system_knows_its_model():
+    with pytest.raises(PiezoError, match=r"is no model; .*; give iphs\.model$"):
+        simulate(derive(load("oscillator")), duration=1)
+
+
+def test_a_temperature_in_celsius(capsys):
+    said = "T_e = 20 K is -253.15 degC; 20 degC is 293.15"
+    with pytest.warns(InputWarning, match=f"^{said}$") as warned, pytest.raises(PiezoError):
+        simulate("piezo_stack", duration=1e-3, inputs={"T_e": 20})
+    assert [warning.filename for warning in warned] == [__file__]
+    assert run(["simulate", "piezo_stack", "--duration", "1ms", "-i", "T_e=20"]) == 2
+    assert capsys.readouterr().err.splitlines()[0] == f"piezo-sym: {said}"
+    with pytest.warns(InputWarning, match=said), pytest.warns(SweepWarning):
+        sweep("piezo_stack", over={"d": [1.0]}, duration=1e-3, inputs={"T_e": 20})
 
 
 def test_a_length_with_a_unit(capsys):
@@ -180,10 +223,30 @@ def test_a_wrong_argument_is_one_of_what_was_called(call, place):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: simulate("oscillator", tend=5), "simulate: unknown name 'tend'; known: inputs"),
+        (
+            lambda: simulate("oscillator", tend=5),
+            "simulate: unknown name 'tend'; known: model, in",
+        ),
         (lambda: simulate("oscillator", input={}), "simulate: unknown name 'input'; did you mean"),
         (lambda: Stepper("oscillator", setp=1), "Stepper: unknown name 'setp'; did you mean"),
         (lambda: operating_point("oscillator", T=300), "operating_point: unknown name 'T'"),
+        (
+            lambda: simulate("oscillator"),
+            "simulate.duration: is missing; expected simulate(model, duration=0.1)",
+        ),
+        (
+            lambda: sweep("oscillator", duration=1),
+            "sweep.over: is missing; expected sweep(model, over={'d': [300.0, 400.0]}, duration=0.",
+        ),
+        (
+            lambda: sweep("oscillator", over={"d": [1.0]}),
+            "sweep.duration: is missing; expected sweep(model, over=",
+        ),
+        (lambda: Stepper("oscillator"), "Stepper.step: is missing; expected Stepper(model, step="),
+        (
+            lambda: periodic_steady_state("oscillator", inputs={}),
+            "periodic_steady_state.frequency: is missing; expected periodic_steady_state(model, in",
+        ),
         (
             lambda: simulate("oscillator", duration="5ms"),
             "simulate.duration: '5ms' is not a finite number; expected a number of seconds, such",

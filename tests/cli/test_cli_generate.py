@@ -60,6 +60,17 @@ def test_a_drifted_file_is_exit_code_1_with_the_difference(call, out):
     )
 
 
+def test_of_an_edited_value_the_lines_are_printed_and_no_hashes(call, spec_file, tmp_path):
+    spec, out = spec_file(), tmp_path / "out"
+    call("generate", spec, "--out", out)
+    spec.write_text(spec.read_text().replace("3.5e-3", "4.5e-3"))
+    answer = call("generate", spec, "--check", "--out", out)
+    assert answer.code == 1
+    assert "-    M: float = 0.0035\n+    M: float = 0.0045\n" in answer.out
+    assert not re.search("[0-9a-f]{64}", answer.out)
+    assert answer.out.endswith("commit the result\nthe sha256 of its spec differs\n")
+
+
 def test_of_a_long_difference_the_first_lines_are_printed(call, out):
     path = out / NAME
     path.write_text(path.read_text().replace(" = ", " := "))

@@ -4,6 +4,9 @@ import json
 
 import pytest
 
+from piezo_sym import simulate, sine
+from piezo_sym.errors import InputWarning
+
 KEYS = ["model", "id", "element", "verdict", "witness", "reason"]
 
 
@@ -154,5 +157,7 @@ def test_an_input_without_effect_is_a_line(call, spec_file):
     run = call(
         "simulate", spec, "--duration", "1e-4", "-i", "V_3=2kV", "-i", "V_in=1", "-i", "S_0=0"
     )
-    assert (run.code, run.err) == (0, "")
-    assert run.out.splitlines()[-1] == "V_3: no element uses this input"
+    assert (run.code, run.err) == (0, "piezo-sym: V_3: no element uses this input\n")
+    with pytest.warns(InputWarning, match="^V_3: no element uses this input$") as warned:
+        simulate(spec, duration=1e-4, inputs={"V_3": sine(1, 2), "S_0": 0.0})
+    assert [warning.filename for warning in warned] == [__file__]

@@ -246,6 +246,21 @@ def test_of_conditions_that_the_values_break_that_is_said():
         assert row.reason.endswith(said)
 
 
+@pytest.mark.parametrize(
+    ("known", "said"),
+    [
+        ('"R >= 0"', "-1; check the sign of the law"),
+        ('"R > 0"', "-1; check the sign of the law"),
+        ("", "the values of the spec do not satisfy it; check the sign of the law"),
+    ],
+)
+def test_of_a_law_of_the_wrong_sign_that_is_said(known, said):
+    text = SPEC.replace('"R >= 0"', known).replace('"R*i"', '"-R*i"')
+    (row,) = (row for row in unproved(text) if row.id == "passive")
+    assert row.verdict is Verdict.REFUTED
+    assert row.reason.endswith(said)
+
+
 STRIBECK = ("R*i*(1 - n*exp(-(i/i_s)**2))", "R*i_s*tanh(i/i_s)*(1 - n*exp(-abs(i)/i_s))")
 
 

@@ -129,6 +129,8 @@ def test_a_list_takes_elements_and_single_quantities():
         (["y_load"], "elements and their quantities, beside what every run has, as y_<port>"),
         (["damper.heta"], "'damper' has effort, flow, power, heat"),
         (["springs.flow"], "did you mean 'spring.flow'?"),
+        (["foo"], "known: spring, mass, capacitor, hysteron, damper, transducer, body, ambient, l"),
+        (["supply", "foo"], "load, supply"),
         (["spring.q"], "'spring' has effort, flow, power, energy"),
         ("spring", "'spring' is no list of names; expected 'all', or a list"),
         (3, "3 is no list of names"),

@@ -213,7 +213,11 @@ def test_lists_of_times_are_taken_as_arrays(signal):
         (lambda: chirp(1, 1, 2, 0), "chirp.duration: 0 is not positive"),
         (lambda: chirp(1, 0, 2, 1), "chirp.f_start: 0 is not positive"),
         (lambda: samples([0, 1], [1]), "samples: 2 times and 1 values; expected as many"),
-        (lambda: samples([0], [1]), "samples: 1 times and 1 values"),
+        (lambda: samples([0], [1]), "samples: 1 row of a time and a value; expected at least two"),
+        (lambda: sine(100, freq=5), "sine: unknown name 'freq'; did you mean 'frequency'?"),
+        (lambda: step(1, 2), "step.after: is missing; expected step(time, before, after)"),
+        (lambda: sine(1, 2, amplitude=3), "sine: multiple values for argument 'amplitude'; expec"),
+        (lambda: square(), "square.amplitude: is missing; expected square(amplitude, frequency)"),
         (
             lambda: samples([0, 1, 1, 1], [1, 2, 3, 4]),
             "at entry 3 follows 1 twice; expected strictly",

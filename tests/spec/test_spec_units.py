@@ -199,6 +199,7 @@ def test_texts_that_are_no_units(text):
         ("Ohm", "did you mean 'ohm'?"),
         ("Henry", "did you mean 'H'?"),
         ("mHenry", "did you mean 'mH'?"),
+        ("uum", "did you mean 'um'?"),
         ("kOhm", "did you mean 'kohm'?"),
         ("uFarad", "did you mean 'uF'?"),
         ("Zoll", "known: m, kg"),

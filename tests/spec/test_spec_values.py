@@ -275,6 +275,7 @@ def test_a_start_without_a_value(start):
     message = refused_edit(('"c_0*log(T_e/T_0)"', f'"{start}"'))
     assert message == (
         "spec: initial.S: has no finite real value: M = 0.0035; check the values of its parameters"
+        + ", and the sign inside log" * ("log" in start)
     )
 
 

@@ -223,7 +223,10 @@ def _declared(word: str, tree: Node, known: Collection[str]) -> str:
         with suppress(SpecError):
             in_si = str(parse_unit(word).factor)
             return f"{declare}; or, if the unit is meant, write {in_si} for it: laws are in SI"
-    return near if near.startswith("did you mean") else f"{declare}; {near}"
+    if near.startswith("did you mean"):
+        return near
+    meant = next((w for w in known if w in LETTERS and word.isalpha() and word.startswith(w)), "")
+    return f"did you mean {quote(meant)}? else {declare}" if meant else f"{declare}; {near}"
 
 
 def _state_in_law(spec: Tables, word: str, letters: tuple[str, ...], element: str) -> str:

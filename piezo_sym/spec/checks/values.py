@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 from piezo_sym.errors import SpecError, quote
 from piezo_sym.expressions.exact_eval import TooCloseError, Value, holds, value_of
-from piezo_sym.expressions.tree import Expr, names
+from piezo_sym.expressions.tree import Call, Expr, names, walk
 from piezo_sym.spec.elements.base import state_symbol
 from piezo_sym.spec.elements.ports import Body
 from piezo_sym.spec.fields import Tables
@@ -134,7 +134,10 @@ def _value(tree: Expr, values: Mapping[str, Value], where: str, spec: Tables) ->
             return value
     what = f"has no finite real value{_values_text(values)}"
     more = without_default(spec, values)
-    remedy = "check the values of its parameters" + f"; {more}" * bool(more)
+    remedy = "check the values of its parameters"
+    called = {part.function for part in walk(tree) if isinstance(part, Call)} & {"log", "sqrt"}
+    remedy += f", and the sign inside {' and '.join(sorted(called))}" * bool(called)
+    remedy += f"; {more}" * bool(more)
     raise SpecError(what, where, remedy=remedy)
 
 
