@@ -7,17 +7,20 @@ import shutil
 import subprocess
 import sys
 import threading
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from piezo_sym import load, simulate
 from piezo_sym.errors import EngineError
 from piezo_sym.module_cache import load_module
 from piezo_sym.run.engine import Engine, EngineWarning, compiler
 from piezo_sym.run.engine import library as libraries
 from piezo_sym.run.engine.compiler import compilers, processor
 from piezo_sym.run.engine.engine import Members, engine_of
+from piezo_sym.spec.load import parse
 from tests.conftest import full_disk, write_script
 
 ROOT = Path(__file__).parents[2]
@@ -84,6 +87,65 @@ def test_runs_have_the_parameters_that_they_are_given(module):
         found = Members(engine, parameters)("rhs", np.repeat(state, 2, 0), 6, INPUTS[None])
         for row, p in zip(found[:, 0], parameters, strict=True):
             assert np.array_equal(row, module.rhs(STATE, INPUTS, p))
+
+
+def steps(law="d*v_mass", stages=1):
+    """The sources of steps; `law` is the damper's force."""
+    header, source, step = (
+        (FILES / f"piezo_stack{e}").read_text() for e in (".h", ".c", "_step.c")
+    )
+    step = step.replace("F_damper = d*v_mass", f"F_damper = {law}")
+    return libraries.Sources("piezo_stack", header, source, step, stages)
+
+
+def drivers(cache):
+    return {path: path.stat().st_mtime_ns for path in cache.rglob("*.o")}
+
+
+def test_an_edit_of_a_law_leaves_the_compiled_driver(cache):
+    made = [libraries.library(steps(law)) for law in ("d*v_mass", "2.0*d*v_mass")]
+    assert len({path.parent for path in made}) == 2
+    kept = drivers(cache)
+    assert len(kept) == 1
+    libraries.library(steps("3.0*d*v_mass"))
+    assert drivers(cache) == kept
+    libraries.library(steps(stages=2))
+    assert len(drivers(cache)) == 2
+
+
+@pytest.mark.parametrize("name", ["law", "driver"])
+def test_a_model_may_be_called_as_parts_of_the_engine(name):
+    text = load("oscillator").to_toml().replace('"oscillator"', f'"{name}"', 1)
+    assert simulate(parse(text), duration=0.1).attrs["method"] == "discrete_gradient"
+
+
+@pytest.mark.parametrize("damage", ["cut", "turned", "a folder", "no folder"])
+def test_a_damaged_driver_is_compiled_again(cache, damage):
+    libraries.library(steps())
+    (path,) = drivers(cache)
+    content = path.read_bytes()
+    match damage:
+        case "cut":
+            path.write_bytes(content[:1000])
+        case "turned":
+            path.write_bytes(bytes(255 - b for b in content))
+        case "a folder":
+            path.unlink()
+            path.mkdir()
+        case "no folder":
+            shutil.rmtree(path.parent)
+            path.parent.write_text("a file")
+    with warnings.catch_warnings(action="error"):
+        assert ctypes.CDLL(str(libraries.library(steps("2.0*d*v_mass"))))
+
+
+def test_a_compiler_that_does_not_preprocess_is_not_passed_by(no_compiler, cache):
+    says = (
+        f'case " $* " in *" -E "*) exit 1;; esac; exec {shutil.which("cc", path=os.defpath)} "$@"'
+    )
+    write_script(no_compiler / "cc", f"PATH={os.defpath}; export PATH; {says}")
+    assert libraries.library(steps()).is_file()
+    assert not drivers(cache)
 
 
 @pytest.mark.parametrize("what", ["source", "flags", "version", "processor"])

@@ -12,13 +12,13 @@ typedef struct {
 /* Accuracy of rates that only serve to locate a switch, as a fraction of the tolerance. */
 #define SKETCH 0.01
 /*
- * Accuracy of rates whose residuals become heat, as a fraction of the tolerance. Large residuals would scale what
- * processes book by more than MOST_SCALED, so that steps are solved once more: above RESIDUAL_LOOSE, and where a
- * state may be mere round-off, it is the smaller fraction.
+ * Accuracy of rates whose residuals become heat, as a fraction of the tolerance. Where that is a large residual, heats
+ * would often be scaled by more than MOST_SCALED, so that a step is solved once more; and where states are mere
+ * round-off, as at rest, residuals would move them. There the smaller fraction holds.
  */
 #define RESIDUAL 0.1
-#define LOOSE 0.03
-#define RESIDUAL_LOOSE 1e-6
+#define SMALL_RESIDUAL 0.03
+#define LARGE 3e-6
 /* With at least this many switches it may be better to step over kinks. */
 enum { MANY = 8 };
 
@@ -138,10 +138,10 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
         LANE(m->noise, k, lane) = run->noise[k];
     }
 #if defined(COSTATES)
-    double residual = MODEL(lesser)(RESIDUAL * b->tolerance, MODEL(greater)(RESIDUAL_LOOSE, LOOSE * b->tolerance));
+    const double small = SMALL_RESIDUAL * b->tolerance;
+    double residual = MODEL(lesser)(RESIDUAL * b->tolerance, MODEL(greater)(LARGE, small));
     for (long k = 0; k < m->n; ++k)
-        if (run->noise[k] > 0.0)
-            residual = MODEL(lesser)(residual, LOOSE * b->tolerance);
+        residual = run->noise[k] > 0.0 ? small : residual;
     LANE(&m->allowed, 0, lane) = residual / NOISE;
 #endif /* COSTATES */
     for (long k = 0; k < m->booked; ++k) {
