@@ -35,8 +35,9 @@ HATCHES = ("", "///", "...", "xxx")  # for areas that share a colour
 LABEL_WIDTH = 24  # characters beside an axis, in each of two lines
 #: Quantities smaller than their unit's largest one by more than this get a panel of their own.
 APART = 100.0
-#: Less change than this, over the size, is round-off, as of a sine sampled at whole periods.
-ROUND_OFF = 1e-11
+#: Less change than this, over the size, counts as round-off, as of a sine sampled at its whole
+#: periods, even the 60,000th: numbers of an axis would need ten digits.
+ROUND_OFF = 1e-9
 STILL = 0.05  # the range of an axis beyond what does not change, over its size
 FEW = 30  # samples, which are marked
 MOST_LANES = 8  # drawn one by one; of more, the mean and the range are drawn
