@@ -1,9 +1,9 @@
 """`plot`: a dashboard of a run: states, inputs and outputs, temperatures, and the ledger.
 
 Input: the `xarray.Dataset` of a run.  Output: a Matplotlib figure with one panel per unit and size
-of the states, inputs, outputs and temperatures; heat released and entropy produced, stacked by
-process; heat conducted between bodies; and the residual of the energy balance; times of events as
-vertical lines; without panels of what is absent, or 0 all the time.
+of the states, inputs, outputs, temperatures, energy and entropy; heat released and entropy
+produced, stacked by process; heat conducted between bodies, energy put in, and the residual of its
+balance; times of events as vertical lines; without panels of what is absent, or 0 all the time.
 """
 
 from collections.abc import Callable, Iterator
@@ -27,14 +27,21 @@ Panel: TypeAlias = tuple[str, Callable[[Axes], None]]
 
 ACROSS = 3  # panels in a row
 WIDTH, HEIGHT = 3.2, 2.1  # of a panel, inches
-LEGEND_WIDTH = 48  # characters of a legend, beside the power of ten of an axis
+LEGEND_WIDTH = 48  # characters of a legend
+SHORT = 30  # characters of a legend that fits beside the power of ten of an axis
+ABOVE = 2.0  # the distance of a longer one from the panel, over the size of its letters
 HANDLE_WIDTH = 5  # characters that the line beside a name takes
 HATCHES = ("", "///", "...", "xxx")  # for areas that share a colour
 LABEL_WIDTH = 24  # characters beside an axis, in each of two lines
 #: Quantities smaller than their unit's largest one by more than this get a panel of their own.
-APART = 1000.0
+APART = 100.0
+#: Less change than this, over the size, counts as round-off, as of a sine sampled at its whole
+#: periods, even the 60,000th: numbers of an axis would need ten digits.
+ROUND_OFF = 1e-9
+STILL = 0.05  # the range of an axis beyond what does not change, over its size
+FEW = 30  # samples, which are marked
 MOST_LANES = 8  # drawn one by one; of more, the mean and the range are drawn
-LEDGER = ("energy_residual", "entropy_residual", "energy", "entropy")
+RESIDUALS = ("energy_residual", "entropy_residual")
 SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
 
 
@@ -67,6 +74,7 @@ def plot(run: xarray.Dataset) -> Figure:
         axes.ticklabel_format(axis="y", scilimits=(-2, 4), useMathText=True)
         axes.yaxis.get_offset_text().set_fontsize(SMALL)
         draw(axes)
+        _widen(axes)
         marks = _mark(axes, run)
         axes.set_ylabel(label, fontsize=LABEL)
         _small_legend(axes)
@@ -94,6 +102,8 @@ def refuse_others(run: xarray.Dataset) -> None:
         raise UsageError(what, where, "one run", remedy)
     if "time" not in run["energy_residual"].dims:
         remedy = "a sweep keeps its runs over time if 'reduce' is left out"
+        if "time" in run.coords:
+            remedy = "keep the time of a sample: plot(run.isel(time=[-1]))"
         raise UsageError("this run has no time", where, expected, remedy)
     if not run["time"].size:
         raise UsageError("this run has no samples", where, "one sample at least")
@@ -115,8 +125,10 @@ def _panels(run: xarray.Dataset) -> Iterator[Panel]:
     )
     for label, draw, prefix, conducted in sums:
         names = [str(name) for name in run.data_vars if str(name).startswith(prefix)]
-        if names := [name for name in names if _is_conducted(run[name]) is conducted]:
-            yield label, partial(draw, run=run, names=names, prefix=prefix)
+        names = [name for name in names if _is_conducted(run[name]) is conducted]
+        groups = list(_by_size(run, names))
+        for group in groups if draw is _lines else [names] * bool(groups):
+            yield label, partial(draw, run=run, names=group, prefix=prefix)
     draw = partial(_lines, names=["energy_residual"], prefix="energy_")
     yield "energy residual [J]", partial(draw, run=run)
 
@@ -136,13 +148,20 @@ def _shown(names: list[str], unit: str) -> str:
 def _by_size(run: xarray.Dataset, names: list[str]) -> Iterator[list[str]]:
     """Yield quantities of one unit in groups of like size, without those that are always 0."""
     sizes = {name: float(np.nanmax(np.abs(_lanes(run[name])), initial=0.0)) for name in names}
-    left = names if run.time.size > 1 else []  # of one instant, 0 is a value like others
-    if not left:
-        yield names
+    if run.time.size == 1:  # of one instant, 0 is a value like others
+        sizes = {name: size or max(sizes.values()) or 1.0 for name, size in sizes.items()}
+    left = names
     while left := [name for name in left if sizes[name] > 0]:
         least = max(sizes[name] for name in left) / APART
         yield [name for name in left if sizes[name] >= least]
         left = [name for name in left if sizes[name] < least]
+
+
+def _widen(axes: Axes) -> None:
+    """Draw what varies by round-off alone as constant."""
+    low, high = axes.dataLim.intervaly
+    if 0 < high - low <= ROUND_OFF * (size := max(abs(low), abs(high))):
+        axes.set_ylim(low - STILL * size, high + STILL * size)
 
 
 def _mark(axes: Axes, run: xarray.Dataset) -> dict[str, LineCollection]:
@@ -159,17 +178,20 @@ def _mark(axes: Axes, run: xarray.Dataset) -> dict[str, LineCollection]:
 def _by_unit(run: xarray.Dataset) -> dict[str, list[str]]:
     names: dict[str, list[str]] = {}
     for name in map(str, run.data_vars):
-        doubled = name.startswith("y_") and run[name].attrs.get("units") == "K"  # also T_<body>
-        if "time" not in run[name].dims or name in LEDGER or name.startswith(SUMS) or doubled:
+        unit = str(run[name].attrs.get("units", "1"))
+        doubled = name.startswith("y_") and unit == "K"  # also T_<body>
+        if name == "entropy":  # of a single body it is that one's state
+            doubled = any(run[other].equals(run[name]) for other in names.get(unit, ()))
+        if "time" not in run[name].dims or name in RESIDUALS or name.startswith(SUMS) or doubled:
             continue
-        names.setdefault(str(run[name].attrs.get("units", "1")), []).append(name)
+        names.setdefault(unit, []).append(name)
     return names
 
 
 def _lines(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str = "") -> None:
     """Draw variables as lines; of a bank every lane, or mean and range if there are many."""
     time = run.time.values
-    look: dict[str, Any] = {"linewidth": 0.9, "marker": "." if time.size == 1 else ""}
+    look: dict[str, Any] = {"linewidth": 0.9, "marker": "." if time.size <= FEW else ""}
     axes.set_prop_cycle(linestyle=[d for d in DASHES for _ in COLOURS], color=COLOURS * len(DASHES))
     for name in names:
         values, label = _lanes(run[name]), name.removeprefix(prefix)
@@ -192,15 +214,16 @@ def _lanes(variable: xarray.DataArray) -> FloatArray:
 
 
 def _stack(axes: Axes, run: xarray.Dataset, names: list[str], prefix: str) -> None:
-    """Draw the integrals of processes, stacked; the lanes of a bank are added up."""
+    """Draw the integrals of processes, stacked, of one instant as points; lanes are added up."""
     time = run.time.values
     base = np.zeros(time.size)
     for n, name in enumerate(names):
-        top = base + _lanes(run[name]).sum(axis=1)
+        own = _lanes(run[name]).sum(axis=1)
+        top = base + own
         colour, label = COLOURS[n % len(COLOURS)], name.removeprefix(prefix)
         hatch = HATCHES[n // len(COLOURS) % len(HATCHES)]
         if time.size == 1:
-            axes.plot(time, top, ".", color=colour, label=label)
+            axes.plot(time, own, ".", color=colour, label=label)
         else:
             look: dict[str, Any] = {"facecolor": colour, "edgecolor": "0.3", "hatch": hatch}
             axes.fill_between(time, base, top, alpha=0.7, linewidth=0, label=label, **look)
@@ -211,10 +234,15 @@ def _small_legend(axes: Axes) -> None:
     """Add a legend above a panel, unless its only curve is named by the panel's label."""
     names = axes.get_legend_handles_labels()[1]
     if len(names) > 1 or names[0] not in axes.get_ylabel():
-        columns = max(1, LEGEND_WIDTH // (max(map(len, names)) + HANDLE_WIDTH))
+        width = max(map(len, names)) + HANDLE_WIDTH
+        columns = max(1, LEGEND_WIDTH // width)
         rows = -(-len(names) // columns)
+        columns = -(-len(names) // rows)
+        numbers = axes.yaxis.get_major_formatter()
+        numbers.set_locs(axes.get_yticks().tolist())
+        crowded = columns * width > SHORT and bool(numbers.get_offset())
         axes.legend(
             **{"fontsize": SMALL - 1, "loc": "lower right", "bbox_to_anchor": (1.0, 1.0)},
-            **{"ncols": -(-len(names) // rows), "handlelength": 1.2, "columnspacing": 1.0},
-            **{"handletextpad": 0.4, "borderpad": 0.2, "borderaxespad": 0.1, "frameon": False},
+            **{"ncols": columns, "handlelength": 1.2, "columnspacing": 1.0, "frameon": False},
+            **{"handletextpad": 0.4, "borderpad": 0.2, "borderaxespad": ABOVE if crowded else 0.1},
         )

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 STORE = ".zarr"
 #: Digits of printed values; and how much larger than a change a value is, if that is round-off.
 DIGITS, ROUND_OFF = 6, 1e12
+#: Of signals; and samples that show a period.
+FREQUENCIES, SHOWN = ("frequency", "f_start", "f_stop"), 20
 ENDINGS = (".nc", ".csv", STORE)
 METHODS = """discrete_gradient (compiled) if left out; or SciPy's RK23, RK45, DOP853, Radau, BDF or
 LSODA."""
@@ -111,7 +113,8 @@ def simulate(
         **span,
         **solver,
     )
-    _report(result, [*units.assumed, *_assumed(signals), *made], out)
+    aliased = _aliased(signals, result) if out else ()  # printed are the last values alone
+    _report(result, [*units.assumed, *_assumed(signals), *made, *aliased], out)
 
 
 def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
@@ -136,6 +139,17 @@ def _assumed(signals: Mapping[str, Any]) -> Iterator[str]:
     for name, value in signals.items():
         if assumed := getattr(value, "assumed", ""):
             yield f"{name}: its file names no units; read {assumed}"
+
+
+def _aliased(signals: Mapping[str, Any], result: xarray.Dataset) -> Iterator[str]:
+    """Yield a line for each input that has less than two samples in a period."""
+    span = float(result.time[-1] - result.time[0])
+    apart = span / max(1, result.time.size - 1)
+    for name, signal in signals.items():
+        frequency = max(getattr(signal, field, 0.0) for field in FREQUENCIES)
+        if frequency * apart > 0.5:
+            text = f"{name}: samples {apart:.3g} s apart alias its period of {1 / frequency:.3g} s"
+            yield f"{text}; --times {math.ceil(SHOWN * frequency * span) + 1} show it"
 
 
 def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) -> None:

@@ -69,15 +69,23 @@ class Runs:
     states: FloatArray  # (runs, nt, n)
     sums: FloatArray  # integrals (runs, nt, rows), in the order of `DrivenModule.rates`
     work: NDArray[Any]  # steps, Newton iterations and refused steps of each run (runs, 3)
+    #: The end of each run's last step: t (runs,), x (runs, n), and its ledger (runs, 2, rows).
+    ends: tuple[FloatArray, FloatArray, FloatArray]
     errors: Sequence[RunError | None]  # of each run
     numerical: bool  # whether sums end with heat and entropy produced by dissipative starts
 
     def trajectory(self, k: int) -> Trajectory:
         """Return run k; raise its error, with the samples it reached, if it stopped."""
         if error := self.errors[k]:
-            error.reached = self.so_far(k).until(self.times)
+            error.reached = self.reached(k)
             raise error
         return self.so_far(k)
+
+    def reached(self, k: int) -> tuple[FloatArray, Trajectory]:
+        """Return the times and run k until the end of its last step."""
+        t, x, ledger = (values[k : k + 1] for values in self.ends)
+        end = replace(self, times=t, states=x[None], sums=ledger[None, :, 0])
+        return self.so_far(k).until(self.times, float(t[0]), end.so_far(0))
 
     def so_far(self, k: int) -> Trajectory:
         """Return run k; samples that it has not reached are nan."""
@@ -131,7 +139,8 @@ def collocate(
             set_scales(batch, systems, x, how.tolerance)
         advance(batch, watch)
     except KeyboardInterrupt as stopped:
-        vars(stopped)["reached"] = results_of(batch, systems, x, times).so_far(0).until(times)
+        batch.call("halt")
+        vars(stopped)["reached"] = results_of(batch, systems, x, times).reached(0)
         raise
     return results_of(batch, systems, x, times)
 
@@ -183,7 +192,7 @@ def results_of(
         seen = np.vstack([x[k], batch.states[k]])
         t, last = float(records["t"][k]), batch.x[k]
         errors[k] = stuck_error(systems[k], METHOD, t, last, seen, jumps=batch.jumps)
-    arrays = batch.states, batch.sums, work
+    arrays = batch.states, batch.sums, work, (records["t"], batch.x, batch.ledgers)
     return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.extra > 0)
 
 

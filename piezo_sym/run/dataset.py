@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from math import nan
+from math import inf, nan
 from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
@@ -82,11 +82,18 @@ class Trajectory:
             numerical=None if self.numerical is None else self.numerical[:, places],
         )
 
-    def until(self, times: FloatArray) -> tuple[FloatArray, Trajectory]:
-        """Return the times and the run before the first sample that it has not reached."""
+    def until(self, times: FloatArray, t: float, last: Trajectory) -> tuple[FloatArray, Trajectory]:
+        """Return the times and the run at the samples reached, and at `last`, if t [s] is later."""
         missing = np.isnan(self.states).any(axis=0)
         count = int(np.argmax(missing)) if missing.any() else missing.size
-        return times[:count], self.at(np.arange(count))
+        run = self.at(np.arange(count))
+        if not self.steps or t <= max(times[:count], default=-inf):
+            return times[:count], run
+        over_time = [name for name, values in vars(run).items() if np.ndim(values) == 2]
+        joined: dict[str, Any] = {
+            name: np.hstack([getattr(run, name), getattr(last, name)]) for name in over_time
+        }
+        return np.append(times[:count], t), replace(run, **joined)
 
 
 @final

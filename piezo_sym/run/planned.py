@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 #: Below this rtol of the discrete gradient, errors are round-off.
 LEAST_RTOL = 1e-12
+#: A run whose inputs leave the domain ends this part of it before.
+BEFORE = 1e-6
 
 
 @final
@@ -124,7 +126,7 @@ class PlannedRun:
             kept = np.append(samples[samples < located.end], located.end)
             work["stopped"] = f"{watched.condition} at t = {located.end:.9g} s"
         times, seen = run(np.unique(np.concatenate([kept, *located.times.values()])))
-        kept = kept[kept <= times[-1]]
+        kept = np.union1d(kept[kept <= times[-1]], times[-1:]) if ends else kept
         dataset = self._dataset_of(kept, seen.at(np.searchsorted(times, kept)), work)
         dataset = dataset.assign(dict(event_variables(self.system, located, times, seen)))
         if ends:
@@ -167,12 +169,13 @@ def compiled_run(
 def _run_before(
     end: float, request: Request, system: DrivenModule, x: FloatArray, samples: FloatArray
 ) -> tuple[FloatArray, Trajectory]:
-    """Return a run to the last sample before its inputs leave the domain at `end` [s].
+    """Return a run to shortly before its inputs leave the domain at `end` [s].
 
     An error before then replaces that of the inputs.
     """
-    before = samples[samples < end]
-    duration = (float(before[-1]) + end) / 2 - system.inputs.start
+    last = end - BEFORE * (end - system.inputs.start)
+    before = np.union1d(samples[samples < end], [last])
+    duration = float(before[-1]) - system.inputs.start
     shorter = replace(system, inputs=replace(system.inputs, duration=duration))
     return before, PlannedRun(request, shorter, x).run(before)[0]
 

@@ -94,15 +94,16 @@ def record(
 ) -> Trajectory:
     """Return the trajectory at `times` (nt,) of a run from `start` (n,).
 
-    An error has the samples reached; `watch` gets the time [s] at which each path begins.
+    An error has the samples reached, and the last time of a step or a sample; `watch` gets the time
+    [s] at which each path begins.
     """
     result = Trajectory.blank(system, start, times.size)
     total, most = np.zeros(len(result.integrals)), group_size(start)
+    since, x = system.inputs.start, start
     try:
         for path in run:
             steps, evaluations = result.steps + path.steps, result.evaluations + path.evaluations
             result = replace(result, steps=steps, evaluations=evaluations)
-            since = float(path.edges[0])
             if watch:
                 watch(since)
             all_stops = path.stops(times)
@@ -111,14 +112,19 @@ def record(
                 valid = in_domain(system, path, stops)
                 kept = np.isin(stops, times) & (np.cumsum(~valid) == 0)
                 places = np.searchsorted(times, stops[kept])
-                result.states[:, places] = path.states(stops)[:, kept]
+                states = path.states(stops)
+                result.states[:, places] = states[:, kept]
                 result.inputs[:, places] = system.inputs.at_samples(stops[kept])
                 result.integrals[:, places] = sums[:, kept]
-                if not valid.all():
-                    raise exit_error(system, path, np.append(since, stops[: np.argmin(valid) + 1]))
-                total, since = sums[:, -1], float(stops[-1])
+                good = valid.size if valid.all() else int(np.argmin(valid))
+                if good:
+                    since, x, total = float(stops[good - 1]), states[:, good - 1], sums[:, good - 1]
+                if good < valid.size:
+                    raise exit_error(system, path, since, float(stops[good]))
     except (RunError, KeyboardInterrupt) as stopped:
-        vars(stopped)["reached"] = result.until(times)
+        u = system.inputs.at_samples(np.array([since]))
+        last = replace(result, states=x[:, None], inputs=u, integrals=total[:, None])
+        vars(stopped)["reached"] = result.until(times, since, last)
         raise
     return result
 
@@ -135,9 +141,8 @@ def in_domain(system: DrivenModule, path: Path, stops: FloatArray) -> np.ndarray
     return np.asarray(~violated & np.all(system.finite(x, u), axis=0))
 
 
-def exit_error(system: DrivenModule, path: Path, stops: FloatArray) -> RunError:
-    """Return the error of a run that leaves the domain between the last two of these times."""
-    before, t = float(stops[-2]), float(stops[-1])
+def exit_error(system: DrivenModule, path: Path, before: float, t: float) -> RunError:
+    """Return the error of a run that leaves the domain between these times [s]."""
     if not np.any(system.violated(*path.point(t))):
         return rate_error(system, t, *path.point(t))
     t = crossing(system, before, t, path.point)

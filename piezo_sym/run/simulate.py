@@ -165,8 +165,8 @@ def simulate(
     EngineError : `step` or method='discrete_gradient' was asked for, and there is no engine.
     RunError : the state leaves the domain, at t = 0, a sample or an accepted step; or the solver
         cannot go on. The message says when, and with which values; its `partial`, and that of a
-        `KeyboardInterrupt`, is the Dataset up to the last sample before; that of a `RunError` has
-        the events until then.
+        `KeyboardInterrupt`, is the Dataset until then: its last sample is the end of the last step,
+        from which another run can go on; that of a `RunError` has the events until then.
     """
     checked(module)
     if progress is not None and not callable(progress):

@@ -138,7 +138,7 @@ class Memory(Results):
     def __init__(self, plan: Plan, frame: xarray.Dataset) -> None:
         super().__init__(plan)
         self._frame = frame
-        errors = np.full(plan.shape, "", dtype=object)
+        errors = np.full(plan.shape, NOT_RUN, dtype=object)
         self._arrays = {"error": errors}
         self._variables = {"error": xarray.Variable(plan.dims, errors, ERROR_ATTRS)}
 

@@ -33,7 +33,7 @@ from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.simulate import simulate
 from piezo_sym.spec.starts import warn_parted
-from piezo_sym.sweeps.frame import Memory, Results, frame_of
+from piezo_sym.sweeps.frame import NOT_RUN, Memory, Results, frame_of
 from piezo_sym.sweeps.plan import Plan, Reduction, read_plan
 from piezo_sym.sweeps.pool import SENT_AT_ONCE, Submit, processors, results, sender, threads_for
 
@@ -112,6 +112,7 @@ def sweep(
     UsageError : an argument is wrong; before anything runs.
     FileError : the store cannot be used.
     RunError : a process of the executor died.
+    KeyboardInterrupt : its `partial` is the Dataset so far; `error` of other runs is "not run".
 
     Warns
     -----
@@ -151,11 +152,23 @@ def run_missing(sink: Results, submit: Submit, at_once: int, progress: object, t
     boxes = list(sink.missing())
     done = total - sum(prod(part.stop - part.start for part in box) for box in boxes)
     bar = progress_of(progress, total, "sweep", "sweep.progress")
-    with bar as tell, closing(results(submit, boxes, at_once)) as completed:
-        for region, result in completed:
-            sink.take(region, result)
-            done += result.errors.size
-            tell(done, total)
+    try:
+        with bar as tell, closing(results(submit, boxes, at_once)) as completed:
+            for region, result in completed:
+                sink.take(region, result)
+                done += result.errors.size
+                tell(done, total)
+    except KeyboardInterrupt:
+        raise interrupted(sink.dataset()) from None
+
+
+def interrupted(partial: xarray.Dataset) -> KeyboardInterrupt:
+    """Return the interrupt of a sweep that has these results."""
+    errors = partial["error"].values
+    text = f"{np.sum(errors != NOT_RUN)} of {errors.size} runs are done: .partial of this exception"
+    stopped = KeyboardInterrupt(f"{text}; with store=... the same call goes on from them")
+    vars(stopped)["partial"] = partial
+    return stopped
 
 
 def refuse_others(others: Iterable[str]) -> None:

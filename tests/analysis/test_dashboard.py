@@ -54,11 +54,21 @@ def test_every_quantity_has_its_panel():
         "T_e, T_body [K]",
         "y_load [m/s]",
         "y_supply [A]",
+        "energy [J]",
         "heat released [J]",
         "entropy produced [J/K]",
         "energy put in [J]",
+        "energy put in [J]",
         "energy residual [J]",
     ]
+    assert [names(axes) for axes in figure.axes[-3:-1]] == [["supply"], ["ambient"]]
+
+
+def test_energy_and_entropy_are_drawn_and_the_entropy_of_one_body_once():
+    figure = plot(simulate("heat_exchanger", duration=1.0, times=11))
+    assert {"S_hot, S_cold, entropy\n[J/K]", "energy [J]"} <= {*labels(figure)}
+    assert names(panel(figure, "S_hot")) == ["S_hot", "S_cold", "entropy"]
+    assert "S [J/K]" in labels(plot(actuator(times=11)))
 
 
 def test_heat_between_bodies_is_not_released_and_not_stacked():
@@ -79,12 +89,16 @@ def test_time_is_named_once_and_its_numbers_stand_under_every_column():
     assert {axes.get_xlabel() for axes in figure.axes} == {""}
     figure.draw_without_rendering()
     numbered = [any(t.get_visible() for t in axes.get_xticklabels()) for axes in figure.axes]
-    assert numbered == [False] * 10 + [True] * 3
+    assert numbered == [False] * 12 + [True] * 3
 
 
 def test_quantities_of_very_different_sizes_have_panels_of_their_own():
     figure = plot(actuator(times=11, outputs=["spring", "body"]))
-    assert {"body.energy [J]", "spring.energy [J]"} <= {*labels(figure)}
+    assert {"energy, body.energy [J]", "spring.energy [J]"} <= {*labels(figure)}
+    run = actuator(times=11)
+    figure = plot(run.assign(q_1=run.q / 99, q_2=run.q / 101))
+    assert {"q, q_1 [m]", "q_2 [m]"} <= {*labels(figure)}
+    figure = plot(actuator(times=11, outputs=["spring", "body"]))
     assert "T_e, T_body, body.effort\n[K]" in labels(figure)
 
 
@@ -114,7 +128,7 @@ def test_curves_are_the_run():
     assert np.array_equal(residual.get_ydata(), run.energy_residual.values)
 
 
-@pytest.mark.parametrize(("start", "prefix"), [("heat", "heat_"), ("entropy", "produced_")])
+@pytest.mark.parametrize(("start", "prefix"), [("heat", "heat_"), ("entropy p", "produced_")])
 def test_the_ledger_is_stacked_by_process(start, prefix):
     run = actuator()
     areas = panel(plot(run), start).collections
@@ -161,7 +175,7 @@ def test_a_legend_covers_no_curve(lanes):
     figure = plot(actuator(parameters={"hysteron_count": lanes}, times=11))
     figure.draw_without_rendering()
     found = [axes for axes in figure.axes if axes.get_legend()]
-    assert len(found) == 5
+    assert len(found) == 6
     for axes in found:
         legend, own = axes.get_legend().get_window_extent(), axes.get_window_extent()
         assert legend.y0 >= own.y1
@@ -169,6 +183,28 @@ def test_a_legend_covers_no_curve(lanes):
         assert not any(
             legend.overlaps(other.get_tightbbox()) for other in figure.axes if other is not axes
         )
+
+
+@pytest.mark.parametrize("length", [3, 6, 18, 42])
+def test_a_legend_stands_beside_or_above_the_power_of_ten(length):
+    run = actuator(times=11)
+    run = run.drop_vars(set(run.data_vars) - {"q", "energy_residual"})
+    figure = plot(run.assign({f"{(length - 1) * 'm'}{n}": run.q for n in "abcd"}))
+    figure.draw_without_rendering()
+    axes = panel(figure, "q")
+    power = axes.yaxis.get_offset_text()
+    assert power.get_text()
+    assert not axes.get_legend().get_window_extent().overlaps(power.get_window_extent())
+
+
+@pytest.mark.parametrize(("noise", "constant"), [(1e-13, True), (1e-8, True), (1e-7, False)])
+def test_what_varies_by_round_off_is_drawn_as_constant(noise, constant):
+    run = actuator(times=11)
+    drive = 60 + noise * np.cos(np.arange(11))
+    axes = panel(plot(run.assign(V_in=("time", drive, run.V_in.attrs))), "V_in")
+    low, high = axes.get_ylim()
+    assert (low < 58 < 62 < high) == constant
+    assert low < drive.min() < drive.max() < high
 
 
 @pytest.mark.long
@@ -213,13 +249,30 @@ def test_a_model_without_heat_has_no_panel_for_it(module):
     from piezo_sym.run import simulate as run_module
 
     figure = plot(run_module(module(COLUMNS), duration=5.0))
-    assert labels(figure) == ["phi [Wb]", "Q [C]", "energy residual [J]"]
+    assert labels(figure) == ["phi [Wb]", "Q [C]", "energy [J]", "energy residual [J]"]
 
 
 def test_one_sample_is_points():
     figure = plot(actuator(times=[0.01]))
     assert all(line.get_marker() == "." for axes in figure.axes for line in axes.lines)
     assert len(panel(figure, "heat").lines) == 2
+
+
+@pytest.mark.parametrize(("start", "prefix"), [("heat", "heat_"), ("entropy p", "produced_")])
+def test_points_of_the_ledger_are_not_stacked(start, prefix):
+    run = actuator(times=11).isel(time=[-1])
+    drawn = {line.get_label(): line.get_ydata()[0] for line in panel(plot(run), start).lines}
+    assert drawn["damper"] == run[f"{prefix}damper"][0]
+    assert drawn["hysteron"] == pytest.approx(float(run[f"{prefix}hysteron"].sum()))
+
+
+def test_few_samples_are_marked():
+    assert {line.get_marker() for line in panel(plot(actuator(times=3)), "q").lines} == {"."}
+    assert {line.get_marker() for line in panel(plot(actuator()), "q").lines} == {""}
+
+
+def test_what_is_zero_all_the_time_is_not_stacked():
+    assert "heat released [J]" not in labels(plot(simulate("piezo_stack", duration=1e-3)))
 
 
 def test_a_run_without_samples_is_refused():
@@ -259,7 +312,7 @@ def test_one_run_of_a_sweep_is_drawn_like_any_other(runs):
         ({}, r"this is a sweep over V_in, L; .* plot\(runs.isel\(V_in=0, L=0\)\)"),
         ({"V_in": 0}, r"this is a sweep over L; .* plot\(runs.isel\(L=0\)\)"),
         ({"V_in": 0, "L": 1}, "this run failed: model 'piezo_stack': start is outside"),
-        ({"V_in": 0, "L": 0, "time": 0}, "this run has no time"),
+        ({"V_in": 0, "L": 0, "time": 0}, r"has no time; .* plot\(run.isel\(time=\[-1\]\)\)"),
     ],
 )
 def test_many_runs_a_failed_one_and_one_without_time_are_refused(runs, chosen, said):

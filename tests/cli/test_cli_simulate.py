@@ -430,13 +430,44 @@ def test_ctrl_c_keeps_what_the_run_has(call, monkeypatch, tmp_path):
         lambda spec, **options: run(spec, **{**options, "progress": interrupt}),
     )
     out = tmp_path / "part.nc"
-    answer = call("simulate", "piezo_stack", *LONG[2:], "--duration", "10", "--out", out)
+    words = ("simulate", "piezo_stack", *LONG[2:], "--duration", "10")
+    answer = call(*words, "--out", out)
     with xarray.open_dataset(out) as partial:
         end = float(partial.time[-1])
     assert 0.05 <= end < 9
     assert answer.code == 130
     said = f"'{out}' holds the run until t = {end:.6g} s\npiezo-sym: stopped\n"
     assert answer.err.lstrip("\n") == said
+
+    answer = call(*words, "--times", "3", "--out", out)
+    assert answer.code == 130
+    with xarray.open_dataset(out) as partial:
+        start, end = partial.time.values
+    assert start == 0
+    assert 0.05 <= end < 9
+    monkeypatch.undo()
+    answer = call("simulate", "piezo_stack", "--duration", "1e-3", "--continue", out)
+    assert f"piezo_stack at t = {end + 1e-3:.6g} s" in answer.out
+
+
+@pytest.mark.parametrize(
+    ("signal", "times", "said"),
+    [
+        ("sine(100, 3kHz)", "6", "apart alias its period of 0.000333 s; --times 61 show it"),
+        ("square(100, 3kHz)", "6", "apart alias its period of 0.000333 s; --times 61 show it"),
+        ("sine(100, 3kHz)", "7", ""),
+        ("100", "2", ""),
+    ],
+)
+def test_samples_that_alias_an_input_are_named_in_one_line(call, tmp_path, signal, times, said):
+    words = ("simulate", "piezo_stack", "--duration", "1ms", "--times", times)
+    words += ("-i", f"V_in={signal}")
+    answer = call(*words, "--out", tmp_path / "run.nc")
+    assert answer.code == 0
+    named = [line for line in answer.out.splitlines() if line.startswith("V_in: ")]
+    assert len(named) == bool(said)
+    assert all(line.endswith(said) for line in named)
+    assert "alias" not in call(*words).out
 
 
 def test_a_dissipative_start_is_asked_for_in_a_word(call):
@@ -459,10 +490,10 @@ def test_a_run_that_stops_leaves_a_file_and_says_so(call, tmp_path):
     options = ("--duration", "10", "-i", "F=sine(1,1)", "--out", out)
     answer = call("simulate", warm, *options, "--event", "on=F")
     assert answer.code == 2
-    assert answer.err.endswith(f"'{out}' holds the run until t = 3.97 s\n")
+    assert answer.err.endswith(f"'{out}' holds the run until t = 3.97774 s\n")
     assert answer.out == "event on, 7 in all: t = 0.5, 1, 1.5, 2, ...\n"
     with xarray.open_dataset(out) as partial:
-        assert float(partial.time[-1]) == pytest.approx(3.97)
+        assert partial.time.values[-2:] == pytest.approx([3.97, 3.97774], rel=1e-5)
         assert partial.on.values == pytest.approx(0.5 * np.arange(1, 8))
 
 

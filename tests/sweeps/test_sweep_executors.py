@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -186,6 +187,39 @@ def test_a_bar_is_shown_where_it_is_wanted(capsys, monkeypatch):
     assert shown.out == ""
     sweep("piezo_stack", **BASE)  # no terminal: none
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("options", [{"threads": 1}, {"threads": 2}, {"store": "runs.zarr"}])
+def test_an_interrupted_sweep_has_the_runs_that_are_done(options, tmp_path, monkeypatch):
+    def interrupt(done, _):
+        if done > 3:
+            raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    given = {"over": {"L": np.linspace(1e-3, 2e-3, 24)}, "duration": 1e-3, "times": 3}
+    given["inputs"] = {"V_in": 100.0}
+    with pytest.raises(KeyboardInterrupt, match=r"^\d+ of 24 runs are done: .partial") as stopped:
+        sweep("piezo_stack", progress=interrupt, **given, **options)
+    partial, whole = stopped.value.partial, sweep("piezo_stack", **given)
+    done = partial.error.values == ""
+    assert 3 < done.sum() < 24
+    assert (partial.error.values[~done] == "not run").all()
+    assert np.array_equal(partial.q.values[done], whole.q.values[done])
+    assert np.isnan(partial.q.values[~done]).all()
+
+
+def test_ctrl_c_of_a_sweep_names_no_file_of_python():
+    code = LONG.format(duration=0.03, store=None, method=None, threads=2)
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        [sys.executable, "-c", code], cwd=ROOT, stdout=pipe, stderr=pipe, text=True
+    ) as process:
+        assert process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+    assert re.search(r"\nKeyboardInterrupt: \d+ of 30000 runs are done: .partial", errors)
+    assert "concurrent" not in errors
+    assert "threading" not in errors
 
 
 LONG = """

@@ -169,6 +169,15 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     MODEL(sample_here)(b, lane);
 }
 
+/* End runs where they are: they have been interrupted. */
+void MODEL(halt)(MODEL(batch) *b);
+void MODEL(halt)(MODEL(batch) *b)
+{
+    for (int lane = 0; lane < REAL_WIDTH; ++lane)
+        if (b->lane[lane].phase != IDLE)
+            MODEL(end_run)(b, lane, 0);
+}
+
 /* Take at most `steps` steps in each lane; returns whether there is more to do. */
 int MODEL(go)(MODEL(batch) *b, long steps);
 int MODEL(go)(MODEL(batch) *b, long steps)
