@@ -7,8 +7,9 @@ limit from the right, at its end the limit from the left.
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from inspect import unwrap
 from itertools import pairwise
 from math import inf, nextafter
@@ -192,16 +193,30 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
         warnings.warn(text, InputWarning, stacklevel=6)
 
 
+@lru_cache(maxsize=64)
+def _unused(module: GeneratedModule) -> frozenset[str]:
+    """Return the inputs that no port and no condition has: nan for one of them changes nothing."""
+    p, u = module.Parameters(), np.array(module.INPUT_DEFAULTS)
+    used = set[str]()
+    with np.errstate(all="ignore"), suppress(ArithmeticError):
+        x = module.initial_state(u, p)
+        for n, record in enumerate(module.INPUTS):
+            v = np.where(np.arange(u.size) == n, np.nan, u)
+            if np.isnan([*module.supply(x, v, p), *module.margins(x, v, p)]).any():
+                used.add(record.name)
+        return frozenset(record.name for record in module.INPUTS) - used
+    return frozenset()
+
+
 def warn_given(module: GeneratedModule, given: object) -> None:
     """Warn of inputs that no element uses, and of temperatures that are meant in degC."""
     if not isinstance(given, Mapping):
         return
-    codes = (getattr(function, "__code__", None) for function in vars(module).values())
-    used = {word for code in codes if code for word in code.co_varnames}
+    unused = _unused(module)  # type: ignore[arg-type]  # modules are hashable
     defaults = dict(zip((r.name for r in module.INPUTS), module.INPUT_DEFAULTS, strict=True))
     for record in (record for record in module.INPUTS if record.name in given):
         name, value, text = record.name, given[record.name], ""
-        if name not in used:
+        if name in unused:
             text = f"{name}: no element uses this input"
         elif record.unit == "K" and is_number(value) and value < COLD and defaults[name] > ROOM:
             text = f"{name} = {value:g} K is {value - ZERO_CELSIUS:g} degC; "
