@@ -195,14 +195,15 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
 
 @lru_cache(maxsize=64)
 def _unused(module: GeneratedModule) -> frozenset[str]:
-    """Return the inputs that no port and no condition has: nan for one of them changes nothing."""
+    """Return the inputs that no port, condition or start has: nan for one of them changes nothing."""
     p, u = module.Parameters(), np.array(module.INPUT_DEFAULTS)
     used = set[str]()
     with np.errstate(all="ignore"), suppress(ArithmeticError):
         x = module.initial_state(u, p)
         for n, record in enumerate(module.INPUTS):
             v = np.where(np.arange(u.size) == n, np.nan, u)
-            if np.isnan([*module.supply(x, v, p), *module.margins(x, v, p)]).any():
+            rows = module.supply(x, v, p), module.margins(x, v, p), module.initial_state(v, p)
+            if np.isnan(np.concatenate(rows)).any():
                 used.add(record.name)
         return frozenset(record.name for record in module.INPUTS) - used
     return frozenset()
