@@ -195,7 +195,7 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
 
 @lru_cache(maxsize=64)
 def _unused(module: GeneratedModule) -> frozenset[str]:
-    """Return the inputs that no port, condition or start has: nan for one of them changes nothing."""
+    """Return the inputs that no port, condition or start has: nan for one changes nothing."""
     p, u = module.Parameters(), np.array(module.INPUT_DEFAULTS)
     used = set[str]()
     with np.errstate(all="ignore"), suppress(ArithmeticError):
