@@ -116,8 +116,12 @@ class Batch:
         self.ledgers = np.empty((len(x), 2, rows))
         fields = {"ledger": self.ledgers}
         fields |= {n: getattr(self, n) for n in ("x", "largest", "noise", "states", "sums")}
-        self._fixed: dict[str, Any] = {name: addresses(array) for name, array in fields.items()}
-        self._fixed |= {"p": self._structures.addresses, "t": inputs.start}
+        fixed: dict[str, Any] = {name: addresses(array) for name, array in fields.items()}
+        fixed |= {"p": self._structures.addresses, "t": inputs.start}
+        fixed["segments"] = self.inputs.address(inputs.start)
+        for name, value in fixed.items():
+            self.records[name] = value
+        self._first_records = self.records.copy()
         sizes = {"count": len(x), "samples": times.size, "extra": extra}
         self._task = c_record("task")(runs=self.run, times=at(self._times), **sizes)
         self.begin(x, stepping)
@@ -127,19 +131,21 @@ class Batch:
         self.x[:], self.largest[:] = x, np.abs(x)
         self.noise[:] = self.ledgers[:] = 0
         self.states[:] = self.sums[:] = nan
-        self.records.fill(0)
-        for name, value in self._fixed.items():
-            self.records[name] = value
-        self.go_on(stepping, self._end)
+        self.records[:] = self._first_records
+        self._open(stepping, self._end)
 
     def go_on(self, stepping: Stepping, stop: float) -> None:
         """Prepare runs to continue until `stop` [s], except for failed ones.
 
         All are in the same segment of the inputs, or beyond `stop`.
         """
-        self._load(stepping)
         t = self.records["t"].min(where=self.records["failed"] == 0, initial=stop)
         self.records["segments"] = self.inputs.address(t)
+        self._open(stepping, stop)
+
+    def _open(self, stepping: Stepping, stop: float) -> None:
+        """Make the working memory of runs that go on until `stop` [s]."""
+        self._load(stepping)
         over, task = bool(stepping.fixed > 0), self._task
         task.over_kinks, task.either = over, stepping.kinks == "either" and not over
         task.stop, task.tolerance = stop, stepping.tolerance
