@@ -176,3 +176,18 @@ def test_progress_is_told_the_time(how):
     assert told == sorted(told)
     assert 0 <= told[-1] <= 0.5
     assert told[-1] > 0 or "method" in how
+
+
+def test_what_is_changed_in_one_run_is_not_in_the_next():
+    """Runs at the same times are copies of one Dataset without numbers."""
+    first, again = (simulate_shipped("oscillator", duration=0.01, times=3) for _ in range(2))
+    for name in ("time", "q", "energy"):
+        again[name].attrs["units"] = "1"
+        again[name].encoding["dtype"] = "f4"
+    again["q"][:] = 7.0
+    again.attrs["model"] = "another"
+    with pytest.raises(ValueError, match="read-only"):
+        again.time.values[:] = 0.0
+    last = simulate_shipped("oscillator", duration=0.01, times=3)
+    assert last.identical(first)
+    assert [last[name].encoding for name in ("time", "q", "energy")] == [{}, {}, {}]
