@@ -18,7 +18,7 @@ typedef struct {
  */
 #define RESIDUAL 0.1
 #define SMALL_RESIDUAL 0.03
-#define LARGE 3e-6
+#define LARGE_RESIDUAL 3e-6
 /* With at least this many switches it may be better to step over kinks. */
 enum { MANY = 8 };
 
@@ -139,7 +139,7 @@ static void MODEL(load)(MODEL(batch) *b, int lane, MODEL(run) *run)
     }
 #if defined(COSTATES)
     const double small = SMALL_RESIDUAL * b->tolerance;
-    double residual = MODEL(lesser)(RESIDUAL * b->tolerance, MODEL(greater)(LARGE, small));
+    double residual = MODEL(lesser)(RESIDUAL * b->tolerance, MODEL(greater)(LARGE_RESIDUAL, small));
     for (long k = 0; k < m->n; ++k)
         residual = run->noise[k] > 0.0 ? small : residual;
     LANE(&m->allowed, 0, lane) = residual / NOISE;
