@@ -118,9 +118,12 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
     }
 }
 
-/* Replace the right-hand side r (n) by the solution. */
+/*
+ * Replace the right-hand side r (n) by the solution; if `which` is SOLVED, in the states of FOR_SOLVED alone,
+ * where the others' right-hand sides are zero.
+ */
 static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
-                         const NUMBER *restrict f, NUMBER *restrict r)
+                         const NUMBER *restrict f, int which, NUMBER *restrict r)
 {
     NUMBER y[MODEL(unknowns) + 1];
     const real *lane = slopes + MODEL(entries);
@@ -135,7 +138,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
         const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
         const int *const row = MODEL(lane_rows) + MODEL(lane_rows_at)[k];
         const real *const into = lane + states * (states + columns) * lanes;
-        for (long j = 0; j < lanes; ++j) {
+        const int takes_part = which == ALL || !MODEL(is_left_out)(k);
+        for (long j = 0; takes_part && j < lanes; ++j) {
             NUMBER free[MODEL(most_states)];
             for (long a = 0; a < states; ++a) {
                 free[a] = NONE;
@@ -146,7 +150,7 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
             for (long a = 0; a < states; ++a)
                 r[m->first[state[a]] + j] = free[a];
         }
-        for (long i = 0; i < rows; ++i) {
+        for (long i = 0; takes_part && i < rows; ++i) {
             NUMBER sum = NONE;
             for (long b = 0; b < states; ++b)
                 sum = MORE(sum, NAMED(total)(r + m->first[state[b]], into + (i * states + b) * lanes,
@@ -176,7 +180,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
         const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
         const int *const column = MODEL(lane_columns) + MODEL(lane_columns_at)[k];
         const NUMBER *const reaction = part + states * states * lanes;
-        for (long a = 0; a < states; ++a)
+        const int takes_part = which == ALL || !MODEL(is_left_out)(k);
+        for (long a = 0; takes_part && a < states; ++a)
             for (long c = 0; c < columns; ++c)
                 for (long j = 0; j < lanes; ++j) {
                     NUMBER *const d = r + m->first[state[a]] + j;

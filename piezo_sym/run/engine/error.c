@@ -121,7 +121,8 @@ static void MODEL(misfits)(const MODEL(batch) *b, real gamma, real ends, real se
 /* The misfits of all states; where stops yield, no series is used for their inner states. */
 static void MODEL(all_misfits)(const MODEL(batch) *b, real gamma, real ends)
 {
-    MODEL(misfits)(b, gamma, ends, wide(1.0), 0, b->m.n);
+    FOR_SOLVED (&b->m, begin, end)
+        MODEL(misfits)(b, gamma, ends, wide(1.0), begin, end);
 #if defined(PATHS)
     const real series = chosen(b->m.yield[HOW_OFTEN] > 0.0, zero, wide(1.0));
     for (long n = 0; n < PATHS; ++n) {
@@ -138,9 +139,9 @@ static void MODEL(filter_misfits)(const MODEL(batch) *b, real gamma, real ends, 
     const MODEL(block) *m = &b->m;
     MODEL(all_misfits)(b, gamma, ends);
     memcpy(once, b->some_rate, (size_t)m->n * sizeof(real));
-    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, once);
+    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, ALL, once);
     memcpy(twice, once, (size_t)m->n * sizeof(real));
-    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, twice);
+    MODEL(solve_real)(m, gamma, m->slope, m->real_factor, ALL, twice);
 }
 
 #if STAGES > 2

@@ -86,8 +86,9 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
 #if LOSSY
         MODEL(lose)(m, h, gap, m->rows);
 #endif
-        for (long k = 0; k < m->n; ++k)
-            gap[k] -= m->rates[i * m->n + k];
+        FOR_SOLVED (m, begin, end)
+            for (long k = begin; k < end; ++k)
+                gap[k] -= m->rates[i * m->n + k];
     }
     return changed;
 }
@@ -100,8 +101,9 @@ static void MODEL(residual_power)(const MODEL(block) *m, real h, real *power)
         MODEL(reach_of)(m, h, stage_reach[i], m->reached);
         MODEL(costates)(m->reached, m->mean + i * m->given, &m->p, m->costate);
         power[i] = zero;
-        for (long k = 0; k < m->n; ++k)
-            power[i] += m->costate[k] * m->gap[i * m->n + k];
+        FOR_SOLVED (m, begin, end)
+            for (long k = begin; k < end; ++k)
+                power[i] += m->costate[k] * m->gap[i * m->n + k];
     }
 }
 #endif /* COSTATES */
@@ -111,15 +113,17 @@ static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES
 {
     const long n = m->n;
     real *const gap = m->gap;
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd
-    for (long k = 0; k < n; ++k) {
-        real one[STAGES];
-        for (long i = 0; i < STAGES; ++i) {
-            one[i] = zero;
-            for (long j = 0; j < STAGES; ++j)
-                one[i] += matrix[i][j] * gap[j * n + k];
+        for (long k = begin; k < end; ++k) {
+            real one[STAGES];
+            for (long i = 0; i < STAGES; ++i) {
+                one[i] = zero;
+                for (long j = 0; j < STAGES; ++j)
+                    one[i] += matrix[i][j] * gap[j * n + k];
+            }
+            for (long i = 0; i < STAGES; ++i)
+                gap[i * n + k] = one[i];
         }
-        for (long i = 0; i < STAGES; ++i)
-            gap[i * n + k] = one[i];
     }
 }

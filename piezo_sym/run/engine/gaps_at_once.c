@@ -116,9 +116,10 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
             break;
         changed = other;
     }
-    for (long i = 0; i < STAGES; ++i)
-        for (long k = 0; k < m->n; ++k)
-            m->gap[i * m->n + k] = m->gap_lanes[k * LANES + i] - m->rates[i * m->n + k];
+    FOR_SOLVED (m, begin, end)
+        for (long i = 0; i < STAGES; ++i)
+            for (long k = begin; k < end; ++k)
+                m->gap[i * m->n + k] = m->gap_lanes[k * LANES + i] - m->rates[i * m->n + k];
     MODEL(from_lanes)(m->rows_lanes, m->booked, m->rows);
     MODEL(from_lanes)(m->margin_lanes, MODEL(limits), m->margin);
     return changed;
@@ -131,12 +132,13 @@ static void MODEL(residual_power)(const MODEL(block) *m, real h, real *power)
     lanes sum = {0.0};
     (void)h;
     MODEL(costates_at_once)(m->shared, m->reached_lanes, m->mean_lanes, m->gap_lanes);
-    for (long k = 0; k < m->n; ++k) {
-        lanes gap = {0.0};
-        for (long i = 0; i < STAGES; ++i)
-            gap[i] = m->gap[i * m->n + k];
-        sum += lanes_of(m->gap_lanes + k * LANES) * gap;
-    }
+    FOR_SOLVED (m, begin, end)
+        for (long k = begin; k < end; ++k) {
+            lanes gap = {0.0};
+            for (long i = 0; i < STAGES; ++i)
+                gap[i] = m->gap[i * m->n + k];
+            sum += lanes_of(m->gap_lanes + k * LANES) * gap;
+        }
     for (long i = 0; i < STAGES; ++i)
         power[i] = sum[i];
 }
@@ -145,11 +147,12 @@ static void MODEL(residual_power)(const MODEL(block) *m, real h, real *power)
 /* Multiply the residuals of each state, a vector over the stages, by a matrix. */
 static void MODEL(transform)(const MODEL(block) *m, const double column[][LANES])
 {
-    for (long k = 0; k < m->n; ++k) {
-        lanes sum = {0.0};
-        for (long j = 0; j < STAGES; ++j)
-            sum += lanes_of(column[j]) * m->gap[j * m->n + k];
-        for (long i = 0; i < STAGES; ++i)
-            m->gap[i * m->n + k] = sum[i];
-    }
+    FOR_SOLVED (m, begin, end)
+        for (long k = begin; k < end; ++k) {
+            lanes sum = {0.0};
+            for (long j = 0; j < STAGES; ++j)
+                sum += lanes_of(column[j]) * m->gap[j * m->n + k];
+            for (long i = 0; i < STAGES; ++i)
+                m->gap[i * m->n + k] = sum[i];
+        }
 }

@@ -73,6 +73,7 @@ typedef struct {
     real *path, *drive; /* parameters of path functionals; drives at stages and at a point */
     real *yield;
     real surveyed; /* the length of a survey's step; else 0 */
+    long solved[PATHS + 1][2]; /* see FOR_SOLVED */
 #endif /* PATHS */
 #if defined(BENDS)
     long bends;
@@ -102,6 +103,60 @@ typedef struct {
     real *margin_lanes;
 #endif /* LANES */
 } MODEL(block);
+
+#if defined(PATHS)
+/* Whether a state, a bank's counted once, is the inner state of a path functional of that bank; -1: of any. */
+static int MODEL(is_inner)(long record, long bank)
+{
+    int found = 0;
+    for (long n = 0; n < PATHS; ++n)
+        found |= MODEL(path)[n][INNER] == record && MODEL(path)[n][BANK] == bank;
+    return found;
+}
+
+/* Whether the lanes of a bank have no states but inner ones. */
+static int MODEL(is_left_out)(long bank)
+{
+    int found = 1;
+    for (long k = MODEL(lane_states_at)[bank]; k < MODEL(lane_states_at)[bank + 1]; ++k)
+        found &= MODEL(is_inner)(MODEL(lane_states)[k], bank);
+    return found;
+}
+
+/* Find the ranges of FOR_SOLVED: they end where a bank is left out. */
+static void MODEL(find_solved)(MODEL(block) *m)
+{
+    long range = 0;
+    memset(m->solved, 0, sizeof m->solved);
+    for (long record = 0; record < MODEL(records); ++record) {
+        const long end = record + 1 < MODEL(records) ? m->first[record + 1] : m->n;
+        int left_out = 0;
+        for (long bank = 0; bank < MODEL(banks); ++bank)
+            left_out |= MODEL(is_inner)(record, bank) && MODEL(is_left_out)(bank);
+        if (left_out)
+            m->solved[++range][0] = end;
+        m->solved[range][1] = end;
+    }
+}
+
+/*
+ * The ranges of the states that Newton's method solves for. Those of banks of path functionals are left out:
+ * their rates are set by the rates of their coordinates.
+ */
+#define FOR_SOLVED(m, begin, end)                \
+    for (long range = 0, begin, end; range <= PATHS && \
+         (begin = (m)->solved[range][0], end = (m)->solved[range][1], 1); ++range)
+#else
+#define FOR_SOLVED(m, begin, end) for (long begin = 0, end = (m)->n; begin < end; begin = end)
+
+static int MODEL(is_left_out)(long bank)
+{
+    (void)bank;
+    return 0;
+}
+#endif /* PATHS */
+
+enum { ALL, SOLVED }; /* the states that a system of equations is solved for */
 
 #define NUMBER real
 #define NAMED(name) MODEL(name##_real)
@@ -185,6 +240,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
         const long lanes = MODEL(path)[k][BANK] < 0 ? 1 : m->lanes[MODEL(path)[k][BANK]];
         paths += lanes, m->drives += MODEL(path)[k][OWN] ? lanes : 1;
     }
+    MODEL(find_solved)(m);
     m->given += GIVEN * paths;
 #endif /* PATHS */
 #define PLACE(array, size) (m->array = memory ? (void *)(memory + at) : NULL, at += (size))
@@ -261,6 +317,14 @@ static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const doubl
     for (long j = 0; j < STAGES; ++j)
         sum += weight[j] * m->rates[j * m->n + i];
     return m->x[i] + h * sum;
+}
+
+/* The states that Newton's method solves for, at a point of the step. */
+static void MODEL(reach_solved)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
+{
+    FOR_SOLVED (m, begin, end)
+        for (long i = begin; i < end; ++i)
+            out[i] = MODEL(reached_row)(m, h, weight, i);
 }
 
 /* All states at a point of the step. */

@@ -62,25 +62,27 @@ static void MODEL(change)(const MODEL(block) *m, real h)
     if (STAGES > 1)
         MODEL(transform)(m, BASIS_STAGE);
 #if STAGES % 2
-    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
+    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, SOLVED, m->gap);
 #endif
 #if PAIRS
     const long n = m->n, size = MODEL(factor_size_complex)(m);
     for (long first = 0; first < PAIRS; first += TOGETHER) {
         real *const one = m->gap + STAGES % 2 * n;
-        for (long k = 0; k < n; ++k)
-            for (long j = 0; j < TOGETHER; ++j) {
-                const real *const pair = one + 2 * OF_LANE(first + j) * n + k;
-                PAIR(m->right[k].re, j) = pair[0];
-                PAIR(m->right[k].im, j) = -pair[n];
-            }
-        MODEL(solve_complex)(m, MODEL(gamma)(h, first), m->slope, m->factor + first * size, m->right);
-        for (long k = 0; k < n; ++k)
-            for (long j = 0; j < TOGETHER && first + j < PAIRS; ++j) {
-                real *const pair = one + 2 * (first + j) * n + k;
-                pair[0] = PAIR(m->right[k].re, j);
-                pair[n] = -PAIR(m->right[k].im, j);
-            }
+        FOR_SOLVED (m, begin, end)
+            for (long k = begin; k < end; ++k)
+                for (long j = 0; j < TOGETHER; ++j) {
+                    const real *const pair = one + 2 * OF_LANE(first + j) * n + k;
+                    PAIR(m->right[k].re, j) = pair[0];
+                    PAIR(m->right[k].im, j) = -pair[n];
+                }
+        MODEL(solve_complex)(m, MODEL(gamma)(h, first), m->slope, m->factor + first * size, SOLVED, m->right);
+        FOR_SOLVED (m, begin, end)
+            for (long k = begin; k < end; ++k)
+                for (long j = 0; j < TOGETHER && first + j < PAIRS; ++j) {
+                    real *const pair = one + 2 * (first + j) * n + k;
+                    pair[0] = PAIR(m->right[k].re, j);
+                    pair[n] = -PAIR(m->right[k].im, j);
+                }
     }
 #endif /* PAIRS */
     if (STAGES > 1)
@@ -155,13 +157,15 @@ static real MODEL(damping)(const MODEL(block) *m)
     const long n = m->n;
     const real *const largest = m->largest, *const x = m->x, *const before = m->prior, *const gap = m->gap;
     real both = zero, prior = NO_SIZE + zero;
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd reduction(+ : both, prior)
-    for (long k = 0; k < n; ++k) {
-        const real per = 1.0 / (largest[k] + size_of(x[k]) + NO_SIZE);
-        for (long j = 0; j < STAGES; ++j) {
-            const real last = before[j * n + k] * per;
-            both += last * (gap[j * n + k] * per);
-            prior += last * last;
+        for (long k = begin; k < end; ++k) {
+            const real per = 1.0 / (largest[k] + size_of(x[k]) + NO_SIZE);
+            for (long j = 0; j < STAGES; ++j) {
+                const real last = before[j * n + k] * per;
+                both += last * (gap[j * n + k] * per);
+                prior += last * last;
+            }
         }
     }
     const real left = both / prior;
@@ -178,17 +182,19 @@ static mask MODEL(solves)(const MODEL(block) *m, real h, real *residual)
     const long n = m->n;
     const real *const largest = m->largest, *const x = m->x, *const rates = m->rates, *const gap = m->gap;
     real most = zero, unsolved = zero; /* how many states are */
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd reduction(max : most) reduction(+ : unsolved)
-    for (long k = 0; k < n; ++k) {
-        real moved = zero, sum = zero;
-        for (long j = 0; j < STAGES; ++j) {
-            moved = largest_of(moved, size_of(rates[j * n + k]));
-            sum += size_of(gap[j * n + k]);
+        for (long k = begin; k < end; ++k) {
+            real moved = zero, sum = zero;
+            for (long j = 0; j < STAGES; ++j) {
+                moved = largest_of(moved, size_of(rates[j * n + k]));
+                sum += size_of(gap[j * n + k]);
+            }
+            const real size = largest[k] + size_of(x[k]) + h * moved + NO_SIZE;
+            const real noises = h * sum / (NOISE * size + m->noise[k]);
+            most = chosen(noises > most, noises, most);
+            unsolved += chosen(h * sum <= LEFT * size, zero, wide(1.0));
         }
-        const real size = largest[k] + size_of(x[k]) + h * moved + NO_SIZE;
-        const real noises = h * sum / (NOISE * size + m->noise[k]);
-        most = chosen(noises > most, noises, most);
-        unsolved += chosen(h * sum <= LEFT * size, zero, wide(1.0));
     }
     *residual = most;
     return unsolved == 0.0;
@@ -218,21 +224,23 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
     const real *restrict const gap = m->gap, *restrict const largest = m->largest, *restrict const x = m->x;
     real *restrict const rates = m->rates, *restrict const prior = m->prior;
     real worst = zero, lost = zero; /* nan, where a change is none */
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd reduction(max : worst) reduction(+ : lost)
-    for (long k = 0; k < n; ++k) {
-        real moved = zero, sum = zero;
-        for (long j = 0; j < STAGES; ++j) {
-            const real all = part * gap[j * n + k], change = chosen(where, all, zero);
-            const real rate = rates[j * n + k] + change;
-            prior[j * n + k] = change;
-            rates[j * n + k] = rate;
-            moved = largest_of(moved, size_of(rate));
-            sum += size_of(change);
+        for (long k = begin; k < end; ++k) {
+            real moved = zero, sum = zero;
+            for (long j = 0; j < STAGES; ++j) {
+                const real all = part * gap[j * n + k], change = chosen(where, all, zero);
+                const real rate = rates[j * n + k] + change;
+                prior[j * n + k] = change;
+                rates[j * n + k] = rate;
+                moved = largest_of(moved, size_of(rate));
+                sum += size_of(change);
+            }
+            const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + m->noise[k] + NO_SIZE;
+            const real noises = h * sum / size;
+            worst = chosen(noises > worst, noises, worst);
+            lost += 0.0 * noises;
         }
-        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + m->noise[k] + NO_SIZE;
-        const real noises = h * sum / size;
-        worst = chosen(noises > worst, noises, worst);
-        lost += 0.0 * noises;
     }
     return worst + lost;
 }

@@ -184,13 +184,14 @@ static void MODEL(noise_of_terms)(const MODEL(block) *m)
 static mask MODEL(below_noise)(const MODEL(block) *m, real h, mask where)
 {
     real worst = zero;
-    for (long k = 0; k < m->n; ++k) {
-        real sum = zero;
-        for (long j = 0; j < STAGES; ++j)
-            sum += size_of(m->prior[j * m->n + k]);
-        const real size = m->noise[k] + NOISE * (m->largest[k] + size_of(m->x[k])) + h * m->rate_noise[k];
-        worst = largest_of(h * sum / (size + NO_SIZE), worst);
-    }
+    FOR_SOLVED (m, begin, end)
+        for (long k = begin; k < end; ++k) {
+            real sum = zero;
+            for (long j = 0; j < STAGES; ++j)
+                sum += size_of(m->prior[j * m->n + k]);
+            const real size = m->noise[k] + NOISE * (m->largest[k] + size_of(m->x[k])) + h * m->rate_noise[k];
+            worst = largest_of(h * sum / (size + NO_SIZE), worst);
+        }
     return where & (worst <= ROUND_OFFS);
 }
 

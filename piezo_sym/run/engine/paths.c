@@ -35,41 +35,57 @@ static MODEL(course) MODEL(course_of)(MODEL(coordinate) *w, real h)
     return c;
 }
 
+/* The share of a step in which z follows C: all of it, none, or something between, which is told by -1. */
+static inline real MODEL(share_of)(const MODEL(course) *c, real limit, real z, real r)
+{
+    const real between = wide(-1.0), far = chosen(c->turns, between, wide(PUT_THERE));
+    const real outside = chosen(size_of(z - limit) <= far * r, zero, between);
+    const real above = chosen(z + c->largest <= r, wide(1.0), outside);
+    return chosen(z + c->least >= -r, above, outside);
+}
+
 /*
- * The lanes of a bank in which z follows C all the way, or yields all the way: in closed form. The share
- * of others becomes negative.
+ * What lanes of a bank give to stage i, where z follows C all the way, or yields all the way: in closed form.
+ * Returns how many other lanes there are; their share becomes negative. The first stage finds the shares.
  */
-static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes,
-                                  const real *restrict z, const real *restrict parameter,
-                                  real *restrict given, real *restrict rates)
+static inline real MODEL(stage_in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes, long i,
+                                               const real *restrict z, const real *restrict parameter,
+                                               real *first_given, real *restrict rate)
 {
     const real *restrict const k = parameter + STIFFNESS * lanes;
     const real *restrict const r = parameter + LIMIT * lanes;
-    const real side = chosen(c->rises, wide(1.0), wide(-1.0)), none = wide(-1.0);
-    const real largest = c->largest, least = c->least, per = 1.0 / c->h;
-    const real far = chosen(c->turns, none, wide(PUT_THERE));
-    for (long i = 0; i < STAGES; ++i) {
-        real *restrict const effort = given + i * m->given + EFFORT * lanes;
-        real *restrict const slip = given + i * m->given + SLIP * lanes;
-        real *restrict const heat = given + i * m->given + HEAT * lanes;
-        real *restrict const share = given + i * m->given + SHARE * lanes;
-        real *restrict const rate = rates + i * m->n;
-        const real drive = c->rate[i], at_stage = c->at_stage[i];
-#pragma omp simd
-        for (long j = 0; j < lanes; ++j) {
-            const real limit = side * r[j], put = (limit - z[j]) * per;
-            const real outside = chosen(size_of(z[j] - limit) <= far * r[j], zero, none);
-            const real above = chosen(z[j] + largest <= r[j], wide(1.0), outside);
-            const real part = chosen(z[j] + least >= -r[j], above, outside);
-            const real there = z[j] + at_stage, yields = chosen(part == 0.0, wide(1.0), zero);
-            const real force = k[j] * chosen(part == 0.0, limit, there);
-            share[j] = part;
-            effort[j] = force;
-            slip[j] = yields * (drive - put);
-            heat[j] = yields * (force * drive);
-            rate[j] = chosen(part == 0.0, put, drive);
-        }
+    real *restrict const effort = first_given + i * m->given + EFFORT * lanes;
+    real *restrict const slip = first_given + i * m->given + SLIP * lanes;
+    real *restrict const heat = first_given + i * m->given + HEAT * lanes;
+    real *restrict const share = first_given + i * m->given + SHARE * lanes;
+    const real *const found = first_given + SHARE * lanes;
+    const real side = chosen(c->rises, wide(1.0), wide(-1.0)), per = 1.0 / c->h;
+    const real drive = c->rate[i], at_stage = c->at_stage[i];
+    real others = zero;
+#pragma omp simd reduction(+ : others)
+    for (long j = 0; j < lanes; ++j) {
+        const real limit = side * r[j], put = (limit - z[j]) * per;
+        const real part = i ? found[j] : MODEL(share_of)(c, limit, z[j], r[j]);
+        const real there = z[j] + at_stage, yields = chosen(part == 0.0, wide(1.0), zero);
+        const real force = k[j] * chosen(part == 0.0, limit, there);
+        share[j] = part;
+        effort[j] = force;
+        slip[j] = yields * (drive - put);
+        heat[j] = yields * (force * drive);
+        rate[j] = chosen(part == 0.0, put, drive);
+        others += chosen(part < 0.0, wide(1.0), zero);
     }
+    return others;
+}
+
+/* The same for all stages. */
+static real MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes, const real *z,
+                                  const real *parameter, real *given, real *rates)
+{
+    const real others = MODEL(stage_in_closed_form)(m, c, lanes, 0, z, parameter, given, rates);
+    for (long i = 1; i < STAGES; ++i)
+        MODEL(stage_in_closed_form)(m, c, lanes, i, z, parameter, given, rates + i * m->n);
+    return others;
 }
 
 /* Compute stops of one coordinate, lanes `which` of a bank, in one lane of numbers. */
@@ -135,7 +151,7 @@ static void MODEL(along_each)(const MODEL(block) *m, MODEL(coordinate) *w, long 
 static void MODEL(find_drives)(const MODEL(block) *m, real h)
 {
     for (long i = 0; i < STAGES; ++i) {
-        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
+        MODEL(reach_solved)(m, h, stage_reach[i], m->reached);
         MODEL(drives)(m->reached, m->mean + i * m->given, m->branch + i * m->branches,
                       m->u + i * m->inputs, &m->p, m->drive + i * m->drives);
     }
@@ -165,15 +181,16 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
             w[lane].yields = LANE(m->yield, EARLIEST, lane);
             w[lane].times = LANE(m->yield, HOW_OFTEN, lane);
         }
+        real others = zero;
         if (together) {
             const MODEL(course) c = MODEL(course_of)(w, h);
-            MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
+            others = MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
         }
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             MODEL(coordinate) *const coordinate = w + lane;
-            if (together)
+            if (OF(others, lane) > 0.0)
                 MODEL(along_others)(m, coordinate, lanes, lane, z, parameter, given, rates);
-            else
+            else if (!together)
                 MODEL(along_each)(m, coordinate, drive, path[OWN], lanes, lane, z, parameter, given, rates);
             LANE(m->yield, EARLIEST, lane) = coordinate->yields;
             LANE(m->yield, HOW_OFTEN, lane) = coordinate->times;

@@ -34,7 +34,7 @@ static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
         MODEL(factorise_real)(m, 0.5 * h, m->slope, m->real_factor);
         for (long k = 0; k < m->n; ++k)
             b->some_rate[k] = m->x[k] + 0.5 * h * b->some_rate[k] - m->reached[k];
-        MODEL(solve_real)(m, 0.5 * h, m->slope, m->real_factor, b->some_rate);
+        MODEL(solve_real)(m, 0.5 * h, m->slope, m->real_factor, ALL, b->some_rate);
         for (long k = 0; k < m->n; ++k) {
             const real change = chosen(going, b->some_rate[k], zero);
             m->reached[k] += change;
