@@ -62,8 +62,8 @@ static void MODEL(as_begun)(MODEL(batch) *b, const MODEL(dispatch) *t)
 static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
 {
     MODEL(block) *m = &b->m;
-    MODEL(copy)(t->steps, m->reached, m->end, m->n);
-    MODEL(copy)(t->steps, b->some_rows, b->part, m->booked);
+    MODEL(take)(t->steps, &m->reached, &m->end, m->n);
+    MODEL(take)(t->steps, &b->some_rows, &b->part, m->booked);
     MODEL(copy)(t->steps & t->found, m->rates, b->known, STAGES * m->n);
 #if defined(PATHS) /* rates at the begin: those of path functionals follow from the stages */
     if (b->fixed == 0.0)
@@ -80,7 +80,7 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
     for (long k = 0; k < m->n; ++k)
         ends_well &= size_of(b->some_rate[k]) < 1e300;
     t->good &= none_of(t->steps) | ends_well;
-    MODEL(copy)(t->steps, b->some_rate, b->end_rate, m->n);
+    MODEL(take)(t->steps, &b->some_rate, &b->end_rate, m->n);
     MODEL(copy)(t->steps, b->some_side, b->end_side, m->branches);
 }
 
@@ -201,8 +201,8 @@ static void MODEL(book)(MODEL(batch) *b, MODEL(dispatch) *t)
         return;
     }
 #endif
-    MODEL(copy)(t->booked, m->end, m->x, m->n);
-    MODEL(copy)(t->booked, b->end_rate, b->rate, m->n);
+    MODEL(take)(t->booked, &m->end, &m->x, m->n);
+    MODEL(take)(t->booked, &b->end_rate, &b->rate, m->n);
     for (long k = 0; k < m->n; ++k)
         m->largest[k] =
             chosen(t->booked, largest_of(size_of(m->x[k]), m->largest[k]), m->largest[k]);

@@ -143,10 +143,11 @@ static void MODEL(find_solved)(MODEL(block) *m)
  * The ranges of the states that Newton's method solves for. Those of banks of path functionals are left out:
  * their rates are set by the rates of their coordinates.
  */
-#define FOR_SOLVED(m, begin, end)                \
-    for (long range = 0, begin, end; range <= PATHS && \
-         (begin = (m)->solved[range][0], end = (m)->solved[range][1], 1); ++range)
-#else
+#define FOR_SOLVED(m, begin, end) \
+    for (long range = 0, begin, end; range <= PATHS \
+         && (begin = (m)->solved[range][0], end = (m)->solved[range][1], 1); ++range)
+#endif /* PATHS */
+#if !defined(PATHS)
 #define FOR_SOLVED(m, begin, end) for (long begin = 0, end = (m)->n; begin < end; begin = end)
 
 static int MODEL(is_left_out)(long bank)
@@ -154,7 +155,7 @@ static int MODEL(is_left_out)(long bank)
     (void)bank;
     return 0;
 }
-#endif /* PATHS */
+#endif
 
 enum { ALL, SOLVED }; /* the states that a system of equations is solved for */
 
@@ -317,14 +318,6 @@ static inline real MODEL(reached_row)(const MODEL(block) *m, real h, const doubl
     for (long j = 0; j < STAGES; ++j)
         sum += weight[j] * m->rates[j * m->n + i];
     return m->x[i] + h * sum;
-}
-
-/* The states that Newton's method solves for, at a point of the step. */
-static void MODEL(reach_solved)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
-{
-    FOR_SOLVED (m, begin, end)
-        for (long i = begin; i < end; ++i)
-            out[i] = MODEL(reached_row)(m, h, weight, i);
 }
 
 /* All states at a point of the step. */

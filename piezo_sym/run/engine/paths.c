@@ -35,11 +35,11 @@ static MODEL(course) MODEL(course_of)(MODEL(coordinate) *w, real h)
     return c;
 }
 
-/* The share of a step in which z follows C: all of it, none, or something between, which is told by -1. */
+/* The share, as in stop.c: 1 where z follows C all the way, 0 where it yields all the way, else -1. */
 static inline real MODEL(share_of)(const MODEL(course) *c, real limit, real z, real r)
 {
-    const real between = wide(-1.0), far = chosen(c->turns, between, wide(PUT_THERE));
-    const real outside = chosen(size_of(z - limit) <= far * r, zero, between);
+    const real neither = wide(-1.0), far = chosen(c->turns, neither, wide(PUT_THERE));
+    const real outside = chosen(size_of(z - limit) <= far * r, zero, neither);
     const real above = chosen(z + c->largest <= r, wide(1.0), outside);
     return chosen(z + c->least >= -r, above, outside);
 }
@@ -147,7 +147,15 @@ static void MODEL(along_each)(const MODEL(block) *m, MODEL(coordinate) *w, long 
     }
 }
 
-/* The drives at the stages. */
+/* The states that Newton's method solves for, at a point of the step. */
+static void MODEL(reach_solved)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
+{
+    FOR_SOLVED (m, begin, end)
+        for (long i = begin; i < end; ++i)
+            out[i] = MODEL(reached_row)(m, h, weight, i);
+}
+
+/* The drives at the stages, which depend on no states but these. */
 static void MODEL(find_drives)(const MODEL(block) *m, real h)
 {
     for (long i = 0; i < STAGES; ++i) {

@@ -21,14 +21,18 @@ enum { SOME = 64, SEEN = 16 };
 
 /*
  * What they have: inner state, stiffness, limit. What they give: for the stages the means of effort,
- * rate of the slip and heat, and the share of the step in which z follows C. On the way: where z is
- * and whether it yields, the heat, and where in a piece of the step it comes to its limit.
+ * rate of the slip and heat, and the share. On the way: where z is, whether it yields, and since when it
+ * follows C; the heat, and where in a piece of the step it comes to its limit.
+ *
+ * The share is for Newton's method: of a change of the rate of C, the same at all times, that of the work
+ * which z takes part in. While z follows C for a fraction a of the step, it has moved with C for half of it
+ * on the mean: a share of a*a.
  */
 typedef struct {
     long count;
     double z[SOME], k[SOME], r[SOME];
     double mean[SHARE][STAGES][SOME], share[SOME];
-    double now[SOME], yields[SOME], heat[SOME], room[SOME], meets[SOME], until[SOME];
+    double now[SOME], yields[SOME], since[SOME], heat[SOME], room[SOME], meets[SOME], until[SOME];
     double lead[STAGES][SOME], moved[STAGES][SOME];
 } MODEL(stops);
 
@@ -143,7 +147,9 @@ static void MODEL(pass)(MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(s
         first = inside < first ? inside : first;
         s->heat[j] += s->meets[j] > 0.0 ? beyond : 0.0;
         s->now[j] = s->meets[j] > 0.0 ? limit : s->now[j] + piece->more;
-        s->share[j] += until - piece->low;
+        const double since = s->yields[j] > 0.0 ? piece->low : s->since[j];
+        s->share[j] += (until - piece->low) * (until + piece->low - 2.0 * since);
+        s->since[j] = since;
         s->yields[j] = s->meets[j];
     }
     w->yields = first;
@@ -187,7 +193,7 @@ static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
         const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
         s->now[j] = begin;
         s->heat[j] = 0.5 * s->k[j] * (z - begin) * (z + begin);
-        s->share[j] = s->yields[j] = 0.0;
+        s->share[j] = s->yields[j] = s->since[j] = 0.0;
     }
     if (!w->pieces)
         MODEL(find_turns)(w);

@@ -199,6 +199,7 @@ static void MODEL(point)(MODEL(batch) *b, const real *x, const real *branch, con
                     b->some_margin);
 }
 
+/* Copy numbers in some lanes. */
 static void MODEL(copy)(mask where, const real *from, real *to, long size)
 {
 #if REAL_WIDTH == 1
@@ -208,6 +209,18 @@ static void MODEL(copy)(mask where, const real *from, real *to, long size)
     for (long k = 0; k < size; ++k)
         to[k] = chosen(where, from[k], to[k]);
 #endif
+}
+
+/* The same from an array that is not needed any more: for all lanes, the two change places. */
+static void MODEL(take)(mask where, real **from, real **to, long size)
+{
+    if (any(none_of(where))) {
+        MODEL(copy)(where, *from, *to, size);
+        return;
+    }
+    real *const taken = *from;
+    *from = *to;
+    *to = taken;
 }
 
 /* Rates and switching functions at the current states; lanes in `choosing` choose branches, too. */
