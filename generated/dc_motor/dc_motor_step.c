@@ -459,6 +459,18 @@ typedef struct {
     double stays;              /* changes that shrink by no more than this factor stagnate */
 } MODEL(block);
 
+#if !defined(PATHS)
+#define FOR_SOLVED(m, begin, end) for (long begin = 0, end = (m)->n; begin < end; begin = end)
+
+static int MODEL(is_left_out)(long bank)
+{
+    (void)bank;
+    return 0;
+}
+#endif
+
+enum { ALL, SOLVED }; /* the states that a system of equations is solved for */
+
 #define NUMBER real
 #define NAMED(name) MODEL(name##_real)
 #define ONE wide(1.0)
@@ -588,9 +600,12 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
     }
 }
 
-/* Replace the right-hand side r (n) by the solution. */
+/*
+ * Replace the right-hand side r (n) by the solution; if `which` is SOLVED, in the states of FOR_SOLVED alone,
+ * where the others' right-hand sides are zero.
+ */
 static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
-                         const NUMBER *restrict f, NUMBER *restrict r)
+                         const NUMBER *restrict f, int which, NUMBER *restrict r)
 {
     NUMBER y[MODEL(unknowns) + 1];
     const real *lane = slopes + MODEL(entries);
@@ -605,7 +620,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
         const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
         const int *const row = MODEL(lane_rows) + MODEL(lane_rows_at)[k];
         const real *const into = lane + states * (states + columns) * lanes;
-        for (long j = 0; j < lanes; ++j) {
+        const int takes_part = which == ALL || !MODEL(is_left_out)(k);
+        for (long j = 0; takes_part && j < lanes; ++j) {
             NUMBER free[MODEL(most_states)];
             for (long a = 0; a < states; ++a) {
                 free[a] = NONE;
@@ -616,7 +632,7 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
             for (long a = 0; a < states; ++a)
                 r[m->first[state[a]] + j] = free[a];
         }
-        for (long i = 0; i < rows; ++i) {
+        for (long i = 0; takes_part && i < rows; ++i) {
             NUMBER sum = NONE;
             for (long b = 0; b < states; ++b)
                 sum = MORE(sum, NAMED(total)(r + m->first[state[b]], into + (i * states + b) * lanes,
@@ -646,7 +662,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
         const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
         const int *const column = MODEL(lane_columns) + MODEL(lane_columns_at)[k];
         const NUMBER *const reaction = part + states * states * lanes;
-        for (long a = 0; a < states; ++a)
+        const int takes_part = which == ALL || !MODEL(is_left_out)(k);
+        for (long a = 0; takes_part && a < states; ++a)
             for (long c = 0; c < columns; ++c)
                 for (long j = 0; j < lanes; ++j) {
                     NUMBER *const d = r + m->first[state[a]] + j;
@@ -816,8 +833,9 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
                 break;
             changed |= other;
         }
-        for (long k = 0; k < m->n; ++k)
-            gap[k] -= m->rates[i * m->n + k];
+        FOR_SOLVED (m, begin, end)
+            for (long k = begin; k < end; ++k)
+                gap[k] -= m->rates[i * m->n + k];
     }
     return changed;
 }
@@ -827,16 +845,18 @@ static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES
 {
     const long n = m->n;
     real *const gap = m->gap;
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd
-    for (long k = 0; k < n; ++k) {
-        real one[STAGES];
-        for (long i = 0; i < STAGES; ++i) {
-            one[i] = zero;
-            for (long j = 0; j < STAGES; ++j)
-                one[i] += matrix[i][j] * gap[j * n + k];
+        for (long k = begin; k < end; ++k) {
+            real one[STAGES];
+            for (long i = 0; i < STAGES; ++i) {
+                one[i] = zero;
+                for (long j = 0; j < STAGES; ++j)
+                    one[i] += matrix[i][j] * gap[j * n + k];
+            }
+            for (long i = 0; i < STAGES; ++i)
+                gap[i * n + k] = one[i];
         }
-        for (long i = 0; i < STAGES; ++i)
-            gap[i * n + k] = one[i];
     }
 }
 
@@ -881,7 +901,7 @@ static void MODEL(change)(const MODEL(block) *m, real h)
     if (STAGES > 1)
         MODEL(transform)(m, BASIS_STAGE);
 #if STAGES % 2
-    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
+    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, SOLVED, m->gap);
 #endif
     if (STAGES > 1)
         MODEL(transform)(m, STAGE_BASIS);
@@ -942,13 +962,15 @@ static real MODEL(damping)(const MODEL(block) *m)
     const long n = m->n;
     const real *const largest = m->largest, *const x = m->x, *const before = m->prior, *const gap = m->gap;
     real both = zero, prior = NO_SIZE + zero;
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd reduction(+ : both, prior)
-    for (long k = 0; k < n; ++k) {
-        const real per = 1.0 / (largest[k] + size_of(x[k]) + NO_SIZE);
-        for (long j = 0; j < STAGES; ++j) {
-            const real last = before[j * n + k] * per;
-            both += last * (gap[j * n + k] * per);
-            prior += last * last;
+        for (long k = begin; k < end; ++k) {
+            const real per = 1.0 / (largest[k] + size_of(x[k]) + NO_SIZE);
+            for (long j = 0; j < STAGES; ++j) {
+                const real last = before[j * n + k] * per;
+                both += last * (gap[j * n + k] * per);
+                prior += last * last;
+            }
         }
     }
     const real left = both / prior;
@@ -965,24 +987,26 @@ static mask MODEL(solves)(const MODEL(block) *m, real h, real *residual)
     const long n = m->n;
     const real *const largest = m->largest, *const x = m->x, *const rates = m->rates, *const gap = m->gap;
     real most = zero, unsolved = zero; /* how many states are */
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd reduction(max : most) reduction(+ : unsolved)
-    for (long k = 0; k < n; ++k) {
-        real moved = zero, sum = zero;
-        for (long j = 0; j < STAGES; ++j) {
-            moved = largest_of(moved, size_of(rates[j * n + k]));
-            sum += size_of(gap[j * n + k]);
+        for (long k = begin; k < end; ++k) {
+            real moved = zero, sum = zero;
+            for (long j = 0; j < STAGES; ++j) {
+                moved = largest_of(moved, size_of(rates[j * n + k]));
+                sum += size_of(gap[j * n + k]);
+            }
+            const real size = largest[k] + size_of(x[k]) + h * moved + NO_SIZE;
+            const real noises = h * sum / (NOISE * size + m->noise[k]);
+            most = chosen(noises > most, noises, most);
+            unsolved += chosen(h * sum <= LEFT * size, zero, wide(1.0));
         }
-        const real size = largest[k] + size_of(x[k]) + h * moved + NO_SIZE;
-        const real noises = h * sum / (NOISE * size + m->noise[k]);
-        most = chosen(noises > most, noises, most);
-        unsolved += chosen(h * sum <= LEFT * size, zero, wide(1.0));
     }
     *residual = most;
     return unsolved == 0.0;
 }
 
-/* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
-static mask MODEL(coarse_by_now)(MODEL(block) *m, real h);
+/* The lanes whose means need more nodes; see nodes.c. */
+static mask MODEL(coarse)(const MODEL(block) *m, real h);
 
 /*
  * The lanes in which a stage lies beyond a switch, by the rates at hand. Their steps will be cut
@@ -1005,21 +1029,23 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
     const real *restrict const gap = m->gap, *restrict const largest = m->largest, *restrict const x = m->x;
     real *restrict const rates = m->rates, *restrict const prior = m->prior;
     real worst = zero, lost = zero; /* nan, where a change is none */
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd reduction(max : worst) reduction(+ : lost)
-    for (long k = 0; k < n; ++k) {
-        real moved = zero, sum = zero;
-        for (long j = 0; j < STAGES; ++j) {
-            const real all = part * gap[j * n + k], change = chosen(where, all, zero);
-            const real rate = rates[j * n + k] + change;
-            prior[j * n + k] = change;
-            rates[j * n + k] = rate;
-            moved = largest_of(moved, size_of(rate));
-            sum += size_of(change);
+        for (long k = begin; k < end; ++k) {
+            real moved = zero, sum = zero;
+            for (long j = 0; j < STAGES; ++j) {
+                const real all = part * gap[j * n + k], change = chosen(where, all, zero);
+                const real rate = rates[j * n + k] + change;
+                prior[j * n + k] = change;
+                rates[j * n + k] = rate;
+                moved = largest_of(moved, size_of(rate));
+                sum += size_of(change);
+            }
+            const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + m->noise[k] + NO_SIZE;
+            const real noises = h * sum / size;
+            worst = chosen(noises > worst, noises, worst);
+            lost += 0.0 * noises;
         }
-        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + m->noise[k] + NO_SIZE;
-        const real noises = h * sum / size;
-        worst = chosen(noises > worst, noises, worst);
-        lost += 0.0 * noises;
     }
     return worst + lost;
 }
@@ -1042,11 +1068,14 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const real part = iteration && m->late > SOON ? MODEL(damping)(m) : (real)wide(1.0);
         const real worst = MODEL(changed)(m, h, part, going);
         const mask far = going & (worst > FAR) & none_of(m->fine);
-        if (iteration == 1 && !LOSSY && any(far))
-            m->fine |= renewed = far & MODEL(coarse_by_now)(m, h);
-        else if (iteration > 2)
+        mask switched = MODEL(gaps)(m, h, going);
+        if (iteration > 2)
             renewed = nowhere;
-        const mask switched = MODEL(gaps)(m, h, going);
+        if (iteration == 1 && !LOSSY && any(far)) {
+            m->fine |= renewed = far & MODEL(coarse)(m, h);
+            if (any(renewed))
+                switched |= MODEL(gaps)(m, h, going);
+        }
         const mask smaller = (worst < before) & none_of(renewed), lost = none_of(worst < 1e300);
         const mask near = smaller & (worst < NEAR);
         const real left = worst / (before + NO_SIZE);
@@ -1136,11 +1165,6 @@ static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) 
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);
     mask found = MODEL(rough)(m, rule, noise);
     return found;
-}
-
-static mask MODEL(coarse_by_now)(MODEL(block) *m, real h)
-{
-    return m->means ? MODEL(rough_parts)(m, h, &MODEL(few), NULL) : nowhere;
 }
 
 /* The lanes that need more than NODES nodes for balances exact to round-off. */

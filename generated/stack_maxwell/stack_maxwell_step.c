@@ -565,6 +565,7 @@ typedef struct {
     real *path, *drive; /* parameters of path functionals; drives at stages and at a point */
     real *yield;
     real surveyed; /* the length of a survey's step; else 0 */
+    long solved[PATHS + 1][2]; /* see FOR_SOLVED */
 #endif /* PATHS */
     mask fine;                 /* lanes whose means are taken at FINE nodes */
     mask over;                 /* lanes that step over kinks: each stage chooses its branches */
@@ -574,6 +575,61 @@ typedef struct {
     int most, late;            /* iterations in a step; after `late` it may be given up */
     double stays;              /* changes that shrink by no more than this factor stagnate */
 } MODEL(block);
+
+#if defined(PATHS)
+/* Whether a state, a bank's counted once, is the inner state of a path functional of that bank; -1: of any. */
+static int MODEL(is_inner)(long record, long bank)
+{
+    int found = 0;
+    for (long n = 0; n < PATHS; ++n)
+        found |= MODEL(path)[n][INNER] == record && MODEL(path)[n][BANK] == bank;
+    return found;
+}
+
+/* Whether the lanes of a bank have no states but inner ones. */
+static int MODEL(is_left_out)(long bank)
+{
+    int found = 1;
+    for (long k = MODEL(lane_states_at)[bank]; k < MODEL(lane_states_at)[bank + 1]; ++k)
+        found &= MODEL(is_inner)(MODEL(lane_states)[k], bank);
+    return found;
+}
+
+/* Find the ranges of FOR_SOLVED: they end where a bank is left out. */
+static void MODEL(find_solved)(MODEL(block) *m)
+{
+    long range = 0;
+    memset(m->solved, 0, sizeof m->solved);
+    for (long record = 0; record < MODEL(records); ++record) {
+        const long end = record + 1 < MODEL(records) ? m->first[record + 1] : m->n;
+        int left_out = 0;
+        for (long bank = 0; bank < MODEL(banks); ++bank)
+            left_out |= MODEL(is_inner)(record, bank) && MODEL(is_left_out)(bank);
+        if (left_out)
+            m->solved[++range][0] = end;
+        m->solved[range][1] = end;
+    }
+}
+
+/*
+ * The ranges of the states that Newton's method solves for. Those of banks of path functionals are left out:
+ * their rates are set by the rates of their coordinates.
+ */
+#define FOR_SOLVED(m, begin, end) \
+    for (long range = 0, begin, end; range <= PATHS \
+         && (begin = (m)->solved[range][0], end = (m)->solved[range][1], 1); ++range)
+#endif /* PATHS */
+#if !defined(PATHS)
+#define FOR_SOLVED(m, begin, end) for (long begin = 0, end = (m)->n; begin < end; begin = end)
+
+static int MODEL(is_left_out)(long bank)
+{
+    (void)bank;
+    return 0;
+}
+#endif
+
+enum { ALL, SOLVED }; /* the states that a system of equations is solved for */
 
 #define NUMBER real
 #define NAMED(name) MODEL(name##_real)
@@ -704,9 +760,12 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
     }
 }
 
-/* Replace the right-hand side r (n) by the solution. */
+/*
+ * Replace the right-hand side r (n) by the solution; if `which` is SOLVED, in the states of FOR_SOLVED alone,
+ * where the others' right-hand sides are zero.
+ */
 static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
-                         const NUMBER *restrict f, NUMBER *restrict r)
+                         const NUMBER *restrict f, int which, NUMBER *restrict r)
 {
     NUMBER y[MODEL(unknowns) + 1];
     const real *lane = slopes + MODEL(entries);
@@ -721,7 +780,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
         const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
         const int *const row = MODEL(lane_rows) + MODEL(lane_rows_at)[k];
         const real *const into = lane + states * (states + columns) * lanes;
-        for (long j = 0; j < lanes; ++j) {
+        const int takes_part = which == ALL || !MODEL(is_left_out)(k);
+        for (long j = 0; takes_part && j < lanes; ++j) {
             NUMBER free[MODEL(most_states)];
             for (long a = 0; a < states; ++a) {
                 free[a] = NONE;
@@ -732,7 +792,7 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
             for (long a = 0; a < states; ++a)
                 r[m->first[state[a]] + j] = free[a];
         }
-        for (long i = 0; i < rows; ++i) {
+        for (long i = 0; takes_part && i < rows; ++i) {
             NUMBER sum = NONE;
             for (long b = 0; b < states; ++b)
                 sum = MORE(sum, NAMED(total)(r + m->first[state[b]], into + (i * states + b) * lanes,
@@ -762,7 +822,8 @@ static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes
         const int *const state = MODEL(lane_states) + MODEL(lane_states_at)[k];
         const int *const column = MODEL(lane_columns) + MODEL(lane_columns_at)[k];
         const NUMBER *const reaction = part + states * states * lanes;
-        for (long a = 0; a < states; ++a)
+        const int takes_part = which == ALL || !MODEL(is_left_out)(k);
+        for (long a = 0; takes_part && a < states; ++a)
             for (long c = 0; c < columns; ++c)
                 for (long j = 0; j < lanes; ++j) {
                     NUMBER *const d = r + m->first[state[a]] + j;
@@ -806,6 +867,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
         const long lanes = MODEL(path)[k][BANK] < 0 ? 1 : m->lanes[MODEL(path)[k][BANK]];
         paths += lanes, m->drives += MODEL(path)[k][OWN] ? lanes : 1;
     }
+    MODEL(find_solved)(m);
     m->given += GIVEN * paths;
 #endif /* PATHS */
 #define PLACE(array, size) (m->array = memory ? (void *)(memory + at) : NULL, at += (size))
@@ -992,14 +1054,18 @@ enum { SOME = 64, SEEN = 16 };
 
 /*
  * What they have: inner state, stiffness, limit. What they give: for the stages the means of effort,
- * rate of the slip and heat, and the share of the step in which z follows C. On the way: where z is
- * and whether it yields, the heat, and where in a piece of the step it comes to its limit.
+ * rate of the slip and heat, and the share. On the way: where z is, whether it yields, and since when it
+ * follows C; the heat, and where in a piece of the step it comes to its limit.
+ *
+ * The share is for Newton's method: of a change of the rate of C, the same at all times, that of the work
+ * which z takes part in. While z follows C for a fraction a of the step, it has moved with C for half of it
+ * on the mean: a share of a*a.
  */
 typedef struct {
     long count;
     double z[SOME], k[SOME], r[SOME];
     double mean[SHARE][STAGES][SOME], share[SOME];
-    double now[SOME], yields[SOME], heat[SOME], room[SOME], meets[SOME], until[SOME];
+    double now[SOME], yields[SOME], since[SOME], heat[SOME], room[SOME], meets[SOME], until[SOME];
     double lead[STAGES][SOME], moved[STAGES][SOME];
 } MODEL(stops);
 
@@ -1114,7 +1180,9 @@ static void MODEL(pass)(MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(s
         first = inside < first ? inside : first;
         s->heat[j] += s->meets[j] > 0.0 ? beyond : 0.0;
         s->now[j] = s->meets[j] > 0.0 ? limit : s->now[j] + piece->more;
-        s->share[j] += until - piece->low;
+        const double since = s->yields[j] > 0.0 ? piece->low : s->since[j];
+        s->share[j] += (until - piece->low) * (until + piece->low - 2.0 * since);
+        s->since[j] = since;
         s->yields[j] = s->meets[j];
     }
     w->yields = first;
@@ -1155,7 +1223,7 @@ static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
         const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
         s->now[j] = begin;
         s->heat[j] = 0.5 * s->k[j] * (z - begin) * (z + begin);
-        s->share[j] = s->yields[j] = 0.0;
+        s->share[j] = s->yields[j] = s->since[j] = 0.0;
     }
     if (!w->pieces)
         MODEL(find_turns)(w);
@@ -1209,41 +1277,57 @@ static MODEL(course) MODEL(course_of)(MODEL(coordinate) *w, real h)
     return c;
 }
 
+/* The share, as in stop.c: 1 where z follows C all the way, 0 where it yields all the way, else -1. */
+static inline real MODEL(share_of)(const MODEL(course) *c, real limit, real z, real r)
+{
+    const real neither = wide(-1.0), far = chosen(c->turns, neither, wide(PUT_THERE));
+    const real outside = chosen(size_of(z - limit) <= far * r, zero, neither);
+    const real above = chosen(z + c->largest <= r, wide(1.0), outside);
+    return chosen(z + c->least >= -r, above, outside);
+}
+
 /*
- * The lanes of a bank in which z follows C all the way, or yields all the way: in closed form. The share
- * of others becomes negative.
+ * What lanes of a bank give to stage i, where z follows C all the way, or yields all the way: in closed form.
+ * Returns how many other lanes there are; their share becomes negative. The first stage finds the shares.
  */
-static void MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes,
-                                  const real *restrict z, const real *restrict parameter,
-                                  real *restrict given, real *restrict rates)
+static inline real MODEL(stage_in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes, long i,
+                                               const real *restrict z, const real *restrict parameter,
+                                               real *first_given, real *restrict rate)
 {
     const real *restrict const k = parameter + STIFFNESS * lanes;
     const real *restrict const r = parameter + LIMIT * lanes;
-    const real side = chosen(c->rises, wide(1.0), wide(-1.0)), none = wide(-1.0);
-    const real largest = c->largest, least = c->least, per = 1.0 / c->h;
-    const real far = chosen(c->turns, none, wide(PUT_THERE));
-    for (long i = 0; i < STAGES; ++i) {
-        real *restrict const effort = given + i * m->given + EFFORT * lanes;
-        real *restrict const slip = given + i * m->given + SLIP * lanes;
-        real *restrict const heat = given + i * m->given + HEAT * lanes;
-        real *restrict const share = given + i * m->given + SHARE * lanes;
-        real *restrict const rate = rates + i * m->n;
-        const real drive = c->rate[i], at_stage = c->at_stage[i];
-#pragma omp simd
-        for (long j = 0; j < lanes; ++j) {
-            const real limit = side * r[j], put = (limit - z[j]) * per;
-            const real outside = chosen(size_of(z[j] - limit) <= far * r[j], zero, none);
-            const real above = chosen(z[j] + largest <= r[j], wide(1.0), outside);
-            const real part = chosen(z[j] + least >= -r[j], above, outside);
-            const real there = z[j] + at_stage, yields = chosen(part == 0.0, wide(1.0), zero);
-            const real force = k[j] * chosen(part == 0.0, limit, there);
-            share[j] = part;
-            effort[j] = force;
-            slip[j] = yields * (drive - put);
-            heat[j] = yields * (force * drive);
-            rate[j] = chosen(part == 0.0, put, drive);
-        }
+    real *restrict const effort = first_given + i * m->given + EFFORT * lanes;
+    real *restrict const slip = first_given + i * m->given + SLIP * lanes;
+    real *restrict const heat = first_given + i * m->given + HEAT * lanes;
+    real *restrict const share = first_given + i * m->given + SHARE * lanes;
+    const real *const found = first_given + SHARE * lanes;
+    const real side = chosen(c->rises, wide(1.0), wide(-1.0)), per = 1.0 / c->h;
+    const real drive = c->rate[i], at_stage = c->at_stage[i];
+    real others = zero;
+#pragma omp simd reduction(+ : others)
+    for (long j = 0; j < lanes; ++j) {
+        const real limit = side * r[j], put = (limit - z[j]) * per;
+        const real part = i ? found[j] : MODEL(share_of)(c, limit, z[j], r[j]);
+        const real there = z[j] + at_stage, yields = chosen(part == 0.0, wide(1.0), zero);
+        const real force = k[j] * chosen(part == 0.0, limit, there);
+        share[j] = part;
+        effort[j] = force;
+        slip[j] = yields * (drive - put);
+        heat[j] = yields * (force * drive);
+        rate[j] = chosen(part == 0.0, put, drive);
+        others += chosen(part < 0.0, wide(1.0), zero);
     }
+    return others;
+}
+
+/* The same for all stages. */
+static real MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes, const real *z,
+                                  const real *parameter, real *given, real *rates)
+{
+    const real others = MODEL(stage_in_closed_form)(m, c, lanes, 0, z, parameter, given, rates);
+    for (long i = 1; i < STAGES; ++i)
+        MODEL(stage_in_closed_form)(m, c, lanes, i, z, parameter, given, rates + i * m->n);
+    return others;
 }
 
 /* Compute stops of one coordinate, lanes `which` of a bank, in one lane of numbers. */
@@ -1305,11 +1389,19 @@ static void MODEL(along_each)(const MODEL(block) *m, MODEL(coordinate) *w, long 
     }
 }
 
-/* The drives at the stages. */
+/* The states that Newton's method solves for, at a point of the step. */
+static void MODEL(reach_solved)(const MODEL(block) *m, real h, const double *weight, real *restrict out)
+{
+    FOR_SOLVED (m, begin, end)
+        for (long i = begin; i < end; ++i)
+            out[i] = MODEL(reached_row)(m, h, weight, i);
+}
+
+/* The drives at the stages, which depend on no states but these. */
 static void MODEL(find_drives)(const MODEL(block) *m, real h)
 {
     for (long i = 0; i < STAGES; ++i) {
-        MODEL(reach_of)(m, h, stage_reach[i], m->reached);
+        MODEL(reach_solved)(m, h, stage_reach[i], m->reached);
         MODEL(drives)(m->reached, m->mean + i * m->given, m->branch + i * m->branches,
                       m->u + i * m->inputs, &m->p, m->drive + i * m->drives);
     }
@@ -1339,15 +1431,16 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
             w[lane].yields = LANE(m->yield, EARLIEST, lane);
             w[lane].times = LANE(m->yield, HOW_OFTEN, lane);
         }
+        real others = zero;
         if (together) {
             const MODEL(course) c = MODEL(course_of)(w, h);
-            MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
+            others = MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
         }
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             MODEL(coordinate) *const coordinate = w + lane;
-            if (together)
+            if (OF(others, lane) > 0.0)
                 MODEL(along_others)(m, coordinate, lanes, lane, z, parameter, given, rates);
-            else
+            else if (!together)
                 MODEL(along_each)(m, coordinate, drive, path[OWN], lanes, lane, z, parameter, given, rates);
             LANE(m->yield, EARLIEST, lane) = coordinate->yields;
             LANE(m->yield, HOW_OFTEN, lane) = coordinate->times;
@@ -1507,8 +1600,9 @@ static mask MODEL(gaps)(const MODEL(block) *m, real h, mask going)
                 break;
             changed |= other;
         }
-        for (long k = 0; k < m->n; ++k)
-            gap[k] -= m->rates[i * m->n + k];
+        FOR_SOLVED (m, begin, end)
+            for (long k = begin; k < end; ++k)
+                gap[k] -= m->rates[i * m->n + k];
     }
     return changed;
 }
@@ -1518,16 +1612,18 @@ static void MODEL(transform)(const MODEL(block) *m, const double matrix[][STAGES
 {
     const long n = m->n;
     real *const gap = m->gap;
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd
-    for (long k = 0; k < n; ++k) {
-        real one[STAGES];
-        for (long i = 0; i < STAGES; ++i) {
-            one[i] = zero;
-            for (long j = 0; j < STAGES; ++j)
-                one[i] += matrix[i][j] * gap[j * n + k];
+        for (long k = begin; k < end; ++k) {
+            real one[STAGES];
+            for (long i = 0; i < STAGES; ++i) {
+                one[i] = zero;
+                for (long j = 0; j < STAGES; ++j)
+                    one[i] += matrix[i][j] * gap[j * n + k];
+            }
+            for (long i = 0; i < STAGES; ++i)
+                gap[i * n + k] = one[i];
         }
-        for (long i = 0; i < STAGES; ++i)
-            gap[i * n + k] = one[i];
     }
 }
 
@@ -1575,7 +1671,7 @@ static void MODEL(change)(const MODEL(block) *m, real h)
     if (STAGES > 1)
         MODEL(transform)(m, BASIS_STAGE);
 #if STAGES % 2
-    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, m->gap);
+    MODEL(solve_real)(m, h * filter, m->slope, m->real_factor, SOLVED, m->gap);
 #endif
     if (STAGES > 1)
         MODEL(transform)(m, STAGE_BASIS);
@@ -1636,13 +1732,15 @@ static real MODEL(damping)(const MODEL(block) *m)
     const long n = m->n;
     const real *const largest = m->largest, *const x = m->x, *const before = m->prior, *const gap = m->gap;
     real both = zero, prior = NO_SIZE + zero;
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd reduction(+ : both, prior)
-    for (long k = 0; k < n; ++k) {
-        const real per = 1.0 / (largest[k] + size_of(x[k]) + NO_SIZE);
-        for (long j = 0; j < STAGES; ++j) {
-            const real last = before[j * n + k] * per;
-            both += last * (gap[j * n + k] * per);
-            prior += last * last;
+        for (long k = begin; k < end; ++k) {
+            const real per = 1.0 / (largest[k] + size_of(x[k]) + NO_SIZE);
+            for (long j = 0; j < STAGES; ++j) {
+                const real last = before[j * n + k] * per;
+                both += last * (gap[j * n + k] * per);
+                prior += last * last;
+            }
         }
     }
     const real left = both / prior;
@@ -1659,24 +1757,26 @@ static mask MODEL(solves)(const MODEL(block) *m, real h, real *residual)
     const long n = m->n;
     const real *const largest = m->largest, *const x = m->x, *const rates = m->rates, *const gap = m->gap;
     real most = zero, unsolved = zero; /* how many states are */
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd reduction(max : most) reduction(+ : unsolved)
-    for (long k = 0; k < n; ++k) {
-        real moved = zero, sum = zero;
-        for (long j = 0; j < STAGES; ++j) {
-            moved = largest_of(moved, size_of(rates[j * n + k]));
-            sum += size_of(gap[j * n + k]);
+        for (long k = begin; k < end; ++k) {
+            real moved = zero, sum = zero;
+            for (long j = 0; j < STAGES; ++j) {
+                moved = largest_of(moved, size_of(rates[j * n + k]));
+                sum += size_of(gap[j * n + k]);
+            }
+            const real size = largest[k] + size_of(x[k]) + h * moved + NO_SIZE;
+            const real noises = h * sum / (NOISE * size + m->noise[k]);
+            most = chosen(noises > most, noises, most);
+            unsolved += chosen(h * sum <= LEFT * size, zero, wide(1.0));
         }
-        const real size = largest[k] + size_of(x[k]) + h * moved + NO_SIZE;
-        const real noises = h * sum / (NOISE * size + m->noise[k]);
-        most = chosen(noises > most, noises, most);
-        unsolved += chosen(h * sum <= LEFT * size, zero, wide(1.0));
     }
     *residual = most;
     return unsolved == 0.0;
 }
 
-/* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
-static mask MODEL(coarse_by_now)(MODEL(block) *m, real h);
+/* The lanes whose means need more nodes; see nodes.c. */
+static mask MODEL(coarse)(const MODEL(block) *m, real h);
 
 /*
  * The lanes in which a stage lies beyond a switch, by the rates at hand. Their steps will be cut
@@ -1699,21 +1799,23 @@ static real MODEL(changed)(const MODEL(block) *m, real h, real part, mask where)
     const real *restrict const gap = m->gap, *restrict const largest = m->largest, *restrict const x = m->x;
     real *restrict const rates = m->rates, *restrict const prior = m->prior;
     real worst = zero, lost = zero; /* nan, where a change is none */
+    FOR_SOLVED (m, begin, end) {
 #pragma omp simd reduction(max : worst) reduction(+ : lost)
-    for (long k = 0; k < n; ++k) {
-        real moved = zero, sum = zero;
-        for (long j = 0; j < STAGES; ++j) {
-            const real all = part * gap[j * n + k], change = chosen(where, all, zero);
-            const real rate = rates[j * n + k] + change;
-            prior[j * n + k] = change;
-            rates[j * n + k] = rate;
-            moved = largest_of(moved, size_of(rate));
-            sum += size_of(change);
+        for (long k = begin; k < end; ++k) {
+            real moved = zero, sum = zero;
+            for (long j = 0; j < STAGES; ++j) {
+                const real all = part * gap[j * n + k], change = chosen(where, all, zero);
+                const real rate = rates[j * n + k] + change;
+                prior[j * n + k] = change;
+                rates[j * n + k] = rate;
+                moved = largest_of(moved, size_of(rate));
+                sum += size_of(change);
+            }
+            const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + m->noise[k] + NO_SIZE;
+            const real noises = h * sum / size;
+            worst = chosen(noises > worst, noises, worst);
+            lost += 0.0 * noises;
         }
-        const real size = NOISE * (largest[k] + size_of(x[k]) + h * moved) + m->noise[k] + NO_SIZE;
-        const real noises = h * sum / size;
-        worst = chosen(noises > worst, noises, worst);
-        lost += 0.0 * noises;
     }
     return worst + lost;
 }
@@ -1739,11 +1841,14 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const real part = iteration && m->late > SOON ? MODEL(damping)(m) : (real)wide(1.0);
         const real worst = MODEL(changed)(m, h, part, going);
         const mask far = going & (worst > FAR) & none_of(m->fine);
-        if (iteration == 1 && !LOSSY && any(far))
-            m->fine |= renewed = far & MODEL(coarse_by_now)(m, h);
-        else if (iteration > 2)
+        mask switched = MODEL(gaps)(m, h, going);
+        if (iteration > 2)
             renewed = nowhere;
-        const mask switched = MODEL(gaps)(m, h, going);
+        if (iteration == 1 && !LOSSY && any(far)) {
+            m->fine |= renewed = far & MODEL(coarse)(m, h);
+            if (any(renewed))
+                switched |= MODEL(gaps)(m, h, going);
+        }
         const mask smaller = (worst < before) & none_of(renewed), lost = none_of(worst < 1e300);
         const mask near = smaller & (worst < NEAR);
         const real left = worst / (before + NO_SIZE);
@@ -1833,11 +1938,6 @@ static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) 
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);
     mask found = MODEL(rough)(m, rule, noise);
     return found;
-}
-
-static mask MODEL(coarse_by_now)(MODEL(block) *m, real h)
-{
-    return m->means ? MODEL(rough_parts)(m, h, &MODEL(few), NULL) : nowhere;
 }
 
 /* The lanes that need more than NODES nodes for balances exact to round-off. */

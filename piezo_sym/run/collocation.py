@@ -36,7 +36,7 @@ CHUNK = 50_000
 MOST_STATES = 32
 #: (least rtol, cheapest number of stages, tolerance of a step's estimated error over rtol); the
 #: tolerance is chosen so that the largest error of a run is about rtol.
-STAGES = ((3e-6, 4, 0.3), (0.0, 6, 0.75))
+STAGES = ((8e-6, 4, 0.3), (0.0, 6, 0.75))
 #: Below this tolerance steps end at kinks, however many there are.
 LEAST_OVER = 1e-6
 #: A run of more steps would take days, and steps below round-off.
@@ -152,12 +152,13 @@ def set_scales(
     first = systems[0]
     batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
     batch.largest[:] = first.scale(batch.largest)
-    quiet = (batch.largest < QUIET / tolerance).any(axis=1)
-    for n in np.flatnonzero(quiet).tolist():
+    quiet = batch.largest < QUIET / tolerance
+    if not quiet.any():
+        return
+    for n in np.flatnonzero(quiet.any(axis=1)).tolist():
         batch.noise[n] = systems[n].noise(x[n], batch.largest[n])
-    if batch.noise.any():
-        least = first.scale(OVER_NOISE * batch.noise / tolerance)
-        batch.largest[:] = np.maximum(batch.largest, least)
+    least = first.scale(OVER_NOISE * batch.noise / tolerance)
+    batch.largest[:] = np.maximum(batch.largest, least)
 
 
 def advance_from_jumps(

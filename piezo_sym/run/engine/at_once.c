@@ -1,6 +1,6 @@
 /*
  * The stages of one run's step, or nodes of its means, in the lanes of vectors. A translation unit
- * of its own, after real.h and a generated <model>_step.c: `real` is a vector here, but a number in
+ * of its own, after waves.c and a generated <model>_step.c: `real` is a vector here, but a number in
  * the engine.
  */
 
@@ -45,4 +45,12 @@ void MODEL(nodes_at_once)(const void *space, const double *x, double *value)
 {
     const MODEL(shared_reals) *const from = space;
     MODEL(integrands)((const real *)x, &from->p, (real *)value);
+}
+
+void MODEL(sines_at_once)(const double *wave, const double *t, double *value)
+{
+    const MODEL(wave) in_all = {
+        wide(wave[0]), wide(wave[1]), wide(wave[2]), wide(wave[3]), wide(wave[4]), zero,
+    };
+    *(real *)value = MODEL(sines)(&in_all, *(const real *)t);
 }

@@ -73,6 +73,7 @@ static size_t MODEL(places)(MODEL(batch) *b, const MODEL(task) *task, real *memo
     PLACE(some_rows, m->booked);
     PLACE(some_margin, MODEL(limits));
     PLACE(some_inputs, m->inputs);
+    PLACE(end_inputs, m->inputs);
     const long waves = m->inputs * (long)(sizeof(MODEL(wave)) / sizeof(real));
     b->waves = memory ? (MODEL(wave) *)(memory + at) : NULL, at += waves;
 #undef PLACE

@@ -124,6 +124,7 @@ class Batch:
         self._first_records = self.records.copy()
         sizes = {"count": len(x), "samples": times.size, "extra": extra}
         self._task = c_record("task")(runs=self.run, times=at(self._times), **sizes)
+        self._stepping: Stepping | None = None  # the options that there is memory for
         self.begin(x, stepping)
 
     def begin(self, x: FloatArray, stepping: Stepping) -> None:
@@ -145,17 +146,26 @@ class Batch:
 
     def _open(self, stepping: Stepping, stop: float) -> None:
         """Make the working memory of runs that go on until `stop` [s]."""
+        self._task.stop = stop
+        if stepping is self._stepping:
+            self._space[:] = 0
+        else:
+            self._prepare(stepping)
+            self._stepping = stepping
+        self.call("open", ctypes.byref(self._task))
+
+    def _prepare(self, stepping: Stepping) -> None:
+        """Load the library for some options, and take as much memory as it needs."""
         self._load(stepping)
         over, task = bool(stepping.fixed > 0), self._task
         task.over_kinks, task.either = over, stepping.kinks == "either" and not over
-        task.stop, task.tolerance = stop, stepping.tolerance
+        task.tolerance = stepping.tolerance
         task.first, task.longest, task.fixed = stepping.first, stepping.longest, stepping.fixed
         size = self.function("batch_size")
         size.restype = LONG
         self._space = np.zeros(size(ctypes.byref(task)) + ALIGNED, dtype=np.uint8)
         place = self._space.ctypes.data
         self.address = ctypes.c_void_p(place + -place % ALIGNED)
-        self.call("open", ctypes.byref(task))
 
     def _load(self, stepping: Stepping) -> None:
         given = self._engine, stepping.stages, "one" if stepping.lossy else self._layout

@@ -15,7 +15,8 @@ from piezo_sym.expressions.tree import Sym
 
 #: Collocation steps of runs in lanes, behind a model's own text and the tables of their stages.
 _COLLOCATION = (
-    *("newton.c", "residual.c", "nodes.c", "inputs.c", "trajectory.c", "predict.c"),
+    *("newton.c", "residual.c", "nodes.c", "waves.c", "inputs.c"),
+    *("trajectory.c", "predict.c"),
     *("error.c", "crossings.c", "replay.c", "samples.c", "lengths.c", "outcome.c", "plan.c"),
     *("dispatch.c", "batch.c", "survey.c", "step_once.c"),
 )
@@ -123,8 +124,9 @@ def _numbers_of(layout: str) -> str:
 def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -> str:
     """Return the file to compile for collocation steps; `layout` and `lossy` as in `Sources`."""
     lanes = stage_lanes(stages, layout, lossy=lossy)
-    vectors = ["#if !defined(PLAIN)", f"#define LANES {lanes}", c_source("at_once.h"), "#endif"]
+    at_once = ["#if defined(LANES)", c_source("at_once.h"), "#endif"] * bool(lanes)
     head = [
+        *(["#if !defined(PLAIN)", f"#define LANES {lanes}", "#endif"] * bool(lanes)),
         _numbers_of(layout),
         *([f'#include "{model}.c"'] if lossy else []),
         "#define LAWS_APART",
@@ -133,7 +135,7 @@ def steps_source(model: str, stages: int, layout: str, *, lossy: bool = False) -
         c_source("law.h"),
         "extern const long MODEL(width);",
         "const long MODEL(width) = REAL_WIDTH;",
-        *(vectors * bool(lanes)),
+        *at_once,
     ]
     nodes, kinds = (1, ["lossy"]) if lossy else (stages + _MORE_NODES, ["lanes"] * bool(lanes))
     numbers = tables(stages, nodes, *kinds)
@@ -150,7 +152,8 @@ def stages_source(model: str, lanes: int) -> str:
     unused = ("function", "variable", "const-variable")
     head = [
         "#if !defined(PLAIN)",
-        f"#define REAL_WIDTH {lanes}",
+        f"#define LANES {lanes}",
+        "#define REAL_WIDTH WIDTH",
         "#if defined(__GNUC__) /* of what is printed, some is for the engine alone */",
         *(f'#pragma GCC diagnostic ignored "-Wunused-{what}"' for what in unused),
         "#endif",
@@ -159,7 +162,7 @@ def stages_source(model: str, lanes: int) -> str:
         _prefix(model),
     ]
     rest = ["#else", f"typedef int {model}_has_no_vectors;", "#endif\n"]
-    return "\n".join([*head, c_source("at_once.h", "at_once.c"), *rest])
+    return "\n".join([*head, c_source("at_once.h", "waves.c", "at_once.c"), *rest])
 
 
 def standalone_step(model: str, step: str) -> str:

@@ -69,7 +69,10 @@ static void MODEL(at_ends)(MODEL(batch) *b, MODEL(dispatch) *t)
     if (b->fixed == 0.0)
         MODEL(as_begun)(b, t);
 #endif
-    MODEL(inputs_at)(b, t->steps, t->begin + t->h, b->some_inputs);
+    if (t->knows_end)
+        memcpy(b->some_inputs, b->end_inputs, (size_t)m->inputs * sizeof(real));
+    else
+        MODEL(inputs_at)(b, t->steps, t->begin + t->h, b->some_inputs);
     memcpy(b->end_branch, m->branch + (STAGES - 1) * m->branches, (size_t)m->branches * sizeof(real));
     for (int again = 0; again < 3; ++again) {
         MODEL(point)(b, m->end, b->end_branch, stage_end, b->some_rate, b->some_side);

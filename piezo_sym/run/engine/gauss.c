@@ -100,7 +100,7 @@ typedef struct {
 #if defined(LANES) /* the same with all stages side by side, see gaps_at_once.c */
     void *shared;
     real *reached_lanes, *gap_lanes, *mean_lanes, *branch_lanes, *u_lanes, *side_lanes, *rows_lanes;
-    real *margin_lanes;
+    real *margin_lanes, *t_lanes;
 #endif /* LANES */
 } MODEL(block);
 
@@ -300,6 +300,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(side_lanes, m->branches * LANES);
     PLACE(rows_lanes, m->booked * LANES);
     PLACE(margin_lanes, MODEL(limits) * LANES);
+    PLACE(t_lanes, LANES);
     PLACE(shared, (long)(MODEL(shared_size)(p) / sizeof(real)));
 #endif /* LANES */
 #if PAIRS

@@ -1,4 +1,4 @@
-/* The inputs of runs, in all lanes at once. Comes before trajectory.c. */
+/* The inputs of runs, in all lanes at once. Comes after waves.c, and before trajectory.c. */
 
 /*
  * An input between its breaks: a sine whose frequency may change linearly; Chebyshev series of `terms`
@@ -17,11 +17,6 @@ typedef struct {
     const MODEL(signal) *signals;
 } MODEL(segment);
 
-/* The sines of an input in all lanes; `others` is 1 in lanes where it is no sine. */
-typedef struct {
-    real amplitude, frequency, rate, phase, offset, others;
-} MODEL(wave);
-
 /* Set the waves of all inputs in a lane that has reached a segment. */
 static void MODEL(enter)(MODEL(wave) *waves, const MODEL(segment) *segment, long inputs, int lane)
 {
@@ -34,16 +29,6 @@ static void MODEL(enter)(MODEL(wave) *waves, const MODEL(segment) *segment, long
         LANE(&waves[k].offset, 0, lane) = s->offset;
         LANE(&waves[k].others, 0, lane) = s->called || s->pieces;
     }
-}
-
-/* The values of sines at the times t. Whole turns are left out: angles stay small in long runs, too. */
-static inline real MODEL(sines)(const MODEL(wave) *w, real t)
-{
-    if (!any(w->amplitude != 0.0))
-        return w->offset;
-    const real turns = (w->frequency + 0.5 * w->rate * t) * t;
-    const real part = turns - ((turns + 0x1.8p52) - 0x1.8p52);
-    return w->offset + w->amplitude * sin_of(6.283185307179586476925 * part + w->phase);
 }
 
 /* The value of a signal given by Chebyshev series, by Clenshaw's recurrence. */

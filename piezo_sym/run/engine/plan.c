@@ -5,6 +5,7 @@ typedef struct {
     real begin, h, behind, slope;
     real ahead, ratio;                 /* where steps begin in those that they recall; how long they are */
     real iterations;                   /* of lanes, before this step */
+    int knows_end;                     /* inputs at the end of steps are in end_inputs */
     mask recalling;                    /* steps that recall recorded ones; see predict.c */
     mask busy, sampling, steps, known; /* with any step; a sample's; the run's own; with a prediction */
     mask planned;                      /* steps whose length follows from their errors */
@@ -18,6 +19,33 @@ typedef struct {
     MODEL(crossing) crossing[REAL_WIDTH];
     double part[REAL_WIDTH];
 } MODEL(dispatch);
+
+/*
+ * The inputs at the stages of steps. Sines at all stages of one run are computed at once, in the last lane of a
+ * vector with more lanes than there are stages that at the end of the step, too: then it returns 1.
+ */
+static int MODEL(stage_inputs)(MODEL(batch) *b, const MODEL(dispatch) *t)
+{
+    const MODEL(block) *m = &b->m;
+#if defined(LANES)
+    int sines = 1;
+    for (long k = 0; k < m->inputs; ++k)
+        sines &= b->waves[k].others == 0.0;
+    for (long i = 0; sines && i < LANES; ++i)
+        m->t_lanes[i] = t->begin + (i < STAGES ? stage_at[i] : 1.0) * t->h;
+    for (long k = 0; sines && k < m->inputs; ++k) {
+        MODEL(sine_at_once)(m, (const double *)(b->waves + k), k);
+        for (long i = 0; i < STAGES; ++i)
+            m->u[i * m->inputs + k] = *MODEL(place_in)(m->u_lanes, m->inputs, i, k);
+        b->end_inputs[k] = *MODEL(place_in)(m->u_lanes, m->inputs, LANES - 1, k);
+    }
+    if (sines)
+        return LANES > STAGES;
+#endif
+    for (long i = 0; i < STAGES; ++i)
+        MODEL(inputs_at)(b, t->busy, t->begin + stage_at[i] * t->h, m->u + i * m->inputs);
+    return 0;
+}
 
 /* Plan the next step of all lanes that have a run. */
 static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
@@ -58,8 +86,7 @@ static MODEL(dispatch) MODEL(planned)(MODEL(batch) *b)
     if (b->tape) /* its steps are taken again to the bit */
         b->m.allowed = zero;
 #endif /* COSTATES */
-    for (long i = 0; i < STAGES; ++i)
-        MODEL(inputs_at)(b, t.busy, t.begin + stage_at[i] * t.h, b->m.u + i * b->m.inputs);
+    t.knows_end = MODEL(stage_inputs)(b, &t);
     t.steps = t.busy & none_of(t.sampling);
     b->m.sketch &= t.steps & none_of(b->m.over);
     return t;

@@ -8,14 +8,20 @@
 #include <stdint.h>
 #include <string.h>
 
-#if !defined(REAL_WIDTH)
+/* The lanes of the processor's vectors. */
 #if defined(__AVX512F__)
-#define REAL_WIDTH 8
+#define WIDEST 8
 #elif defined(__AVX__)
-#define REAL_WIDTH 4
+#define WIDEST 4
 #else
-#define REAL_WIDTH 2
+#define WIDEST 2
 #endif
+/* LANES lanes for the stages of one run are in vectors of this many: see gaps_at_once.c. */
+#define WIDTH (LANES < WIDEST ? LANES : WIDEST)
+#define VECTORS (LANES / WIDTH)
+
+#if !defined(REAL_WIDTH)
+#define REAL_WIDTH WIDEST
 #endif
 
 #if REAL_WIDTH == 1

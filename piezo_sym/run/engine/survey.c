@@ -12,6 +12,14 @@ enum { ROUGH_ITERATIONS = 8 };
 #define SHORTEST 1e-6
 /* The most steps of a survey; later magnitudes count when the run itself reaches them. */
 enum { MOST_SURVEYED = 10000 };
+/*
+ * Under sines of one frequency motions settle: after so many periods, once no magnitude has grown by more than GROWTH
+ * in the second half of the time, a survey leaps over periods. Entropies of bodies grow as long as there is heat:
+ * by their growth in the period before, and by no more than the part MOST_GAINED in a leap.
+ */
+#define PERIODS 4.0
+#define GROWTH 0.01
+#define MOST_GAINED 0.5
 
 /* Midpoint steps of length h by Newton's method, midpoints in m->reached; returns the lanes that succeed. */
 static mask MODEL(midpoint)(MODEL(batch) *b, real h, mask where)
@@ -75,14 +83,78 @@ static int MODEL(go_on_surveying)(MODEL(batch) *b, int lane, double longest, int
     return l->t < b->stop;
 }
 
+/* The period of a lane's inputs [s]: sines of one frequency up to the end of the run; else HUGE_VAL. */
+static double MODEL(period)(const MODEL(batch) *b, int lane)
+{
+    double frequency = 0.0;
+    int one = b->lane[lane].segment->stop >= b->stop;
+    for (long k = 0; k < b->m.inputs; ++k) {
+        const MODEL(wave) *const w = b->waves + k;
+        const double its = fabs(LANE(&w->frequency, 0, lane));
+        if (LANE(&w->amplitude, 0, lane) != 0.0) {
+            one &= frequency == 0.0 || frequency == its;
+            frequency = its;
+        }
+        one &= LANE(&w->others, 0, lane) == 0.0 && LANE(&w->rate, 0, lane) == 0.0;
+    }
+    return one && frequency > 0.0 ? 1.0 / frequency : HUGE_VAL;
+}
+
+/* Whether a state is the entropy of a body. */
+static int MODEL(is_entropy)(const MODEL(block) *m, long k)
+{
+    int found = 0;
+    (void)m, (void)k;
+#if defined(COSTATES)
+    for (long j = 0; j < MODEL(bodies); ++j) {
+        const long record = MODEL(body)[j];
+        found |= k >= m->first[record] && k < (record + 1 < MODEL(records) ? m->first[record + 1] : m->n);
+    }
+#endif
+    return found;
+}
+
+/* Let a lane, whose states at the time `since` are in `known`, leap over periods once it has gone through one. */
+static void MODEL(leap)(MODEL(batch) *b, int lane, double period, double *since)
+{
+    MODEL(block) *m = &b->m;
+    MODEL(lane) *l = b->lane + lane;
+    const double took = l->t - *since;
+    double most = b->stop - l->t;
+    if (took < (1.0 - 1e-9) * period)
+        return;
+    for (long k = 0; took < HUGE_VAL && k < m->n; ++k)
+        if (MODEL(is_entropy)(m, k)) {
+            const double gained = fabs(LANE(m->x, k, lane) - LANE(b->known, k, lane));
+            most = MODEL(lesser)(most, MOST_GAINED * fabs(LANE(m->x, k, lane)) / gained * took);
+        }
+    const double leap = took < HUGE_VAL ? floor(most / period) * period : 0.0;
+    for (long k = 0; k < m->n; ++k) {
+        double *const x = &LANE(m->x, k, lane), *const largest = &LANE(m->largest, k, lane);
+        if (leap > 0.0 && MODEL(is_entropy)(m, k)) {
+            *x += leap / took * (*x - LANE(b->known, k, lane));
+            *largest = MODEL(greater)(fabs(*x), *largest);
+        }
+        LANE(b->known, k, lane) = *x;
+    }
+    l->t += leap;
+    l->known = leap > 0.0 ? 0.0 : l->known;
+    *since = l->t;
+}
+
 /* Survey as many runs as there are lanes, from `first` on, by steps of at most this length. */
 static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
 {
     MODEL(block) *m = &b->m;
     mask going = nowhere;
+    double period[REAL_WIDTH], since[REAL_WIDTH], begin[REAL_WIDTH]; /* since when a lane goes through a period */
+    real grown = zero; /* when a magnitude grew last */
     for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {
         MODEL(load)(b, lane, b->runs + first + lane);
         b->lane[lane].h = longest;
+        period[lane] = MODEL(period)(b, lane);
+        since[lane] = -HUGE_VAL;
+        begin[lane] = LANE(&grown, 0, lane) = b->lane[lane].t;
         SET(going, lane, 1);
     }
     for (long step = 0; step < MOST_SURVEYED && any(going); ++step) {
@@ -94,20 +166,28 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
             l->h = MODEL(lesser)(l->h, MODEL(until)(b, l) - l->t);
             LANE(&h, 0, lane) = l->h;
         }
-        MODEL(inputs_at)(b, going, MODEL(now)(b) + 0.5 * h, b->some_inputs);
+        const real t = MODEL(now)(b);
+        MODEL(inputs_at)(b, going, t + 0.5 * h, b->some_inputs);
         const mask good = MODEL(midpoint)(b, h, going);
         mask back = nowhere;
         for (int lane = 0; lane < REAL_WIDTH; ++lane)
             SET(back, lane, IN(going, lane) && !IN(good, lane) && b->lane[lane].known > 0.0);
         for (long k = 0; k < m->n; ++k) {
             const real middle = m->reached[k];
+            const mask grows = going & (size_of(middle) > (1.0 + GROWTH) * m->largest[k]);
+            if (!MODEL(is_entropy)(m, k))
+                grown = chosen(grows, t, grown);
             m->largest[k] = chosen(good, largest_of(size_of(middle), m->largest[k]), m->largest[k]);
             m->x[k] = chosen(good, 2.0 * middle - m->x[k], chosen(back, b->kept[k], m->x[k]));
             b->kept[k] = chosen(good, middle, b->kept[k]);
         }
         for (int lane = 0; lane < REAL_WIDTH; ++lane)
-            if (IN(going, lane))
+            if (IN(going, lane)) {
                 SET(going, lane, MODEL(go_on_surveying)(b, lane, longest, IN(good, lane) != 0));
+                const double took = b->lane[lane].t - begin[lane], growing = LANE(&grown, 0, lane) - begin[lane];
+                if (IN(good, lane) && took > PERIODS * period[lane] && took > 2.0 * growing)
+                    MODEL(leap)(b, lane, period[lane], since + lane);
+            }
     }
     for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {
         for (long k = 0; k < m->n; ++k)

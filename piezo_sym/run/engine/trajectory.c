@@ -110,6 +110,7 @@ typedef struct {
     real *kept_branch;                  /* branches of the run, while a step begins at the last sample */
     real *end_rate, *end_side, *end_branch, *part; /* at its end; what it adds to sums */
     real *some_rate, *some_left, *some_side, *some_rows, *some_margin, *some_inputs;
+    real *end_inputs; /* of the current step, where it is known */
     long sizes[SIZES];
 } MODEL(batch);
 
