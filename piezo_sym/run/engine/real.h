@@ -64,6 +64,19 @@ static const mask nowhere = {0};
 /* A scalar or a vector as a vector. Subtracting zero changes nothing, not even -0. */
 #define wide(value) ((real)((value) - zero))
 
+/* GCC finds no single instruction for these by itself. */
+#if REAL_WIDTH == 4 && defined(__AVX__) && !defined(__clang__)
+static inline real chosen(mask where, real then, real other)
+{
+    return (real)__builtin_ia32_blendvpd256(other, then, (real)where);
+}
+
+static inline int any(mask where)
+{
+    typedef long long four __attribute__((vector_size(32)));
+    return !__builtin_ia32_ptestz256((four)where, (four)where);
+}
+#else
 static inline real chosen(mask where, real then, real other)
 {
     return (real)((where & (mask)then) | (~where & (mask)other));
@@ -76,6 +89,7 @@ static inline int any(mask where)
     memcpy(&found, &small, REAL_WIDTH);
     return found != 0;
 }
+#endif
 
 static inline real size_of(real a)
 {
