@@ -601,8 +601,8 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
 }
 
 /*
- * Replace the right-hand side r (n) by the solution; if `which` is SOLVED, in the states of FOR_SOLVED alone,
- * where the others' right-hand sides are zero.
+ * Replace the right-hand side r (n) by the solution; if `which` is SOLVED, in the states of FOR_SOLVED alone:
+ * those of the others are taken as zero, and neither read nor written.
  */
 static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
                          const NUMBER *restrict f, int which, NUMBER *restrict r)
@@ -1005,8 +1005,8 @@ static mask MODEL(solves)(const MODEL(block) *m, real h, real *residual)
     return unsolved == 0.0;
 }
 
-/* The lanes whose means need more nodes; see nodes.c. */
-static mask MODEL(coarse)(const MODEL(block) *m, real h);
+/* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
+static mask MODEL(coarse_by_now)(MODEL(block) *m, real h);
 
 /*
  * The lanes in which a stage lies beyond a switch, by the rates at hand. Their steps will be cut
@@ -1068,14 +1068,11 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const real part = iteration && m->late > SOON ? MODEL(damping)(m) : (real)wide(1.0);
         const real worst = MODEL(changed)(m, h, part, going);
         const mask far = going & (worst > FAR) & none_of(m->fine);
-        mask switched = MODEL(gaps)(m, h, going);
-        if (iteration > 2)
+        if (iteration == 1 && !LOSSY && any(far))
+            m->fine |= renewed = far & MODEL(coarse_by_now)(m, h);
+        else if (iteration > 2)
             renewed = nowhere;
-        if (iteration == 1 && !LOSSY && any(far)) {
-            m->fine |= renewed = far & MODEL(coarse)(m, h);
-            if (any(renewed))
-                switched |= MODEL(gaps)(m, h, going);
-        }
+        const mask switched = MODEL(gaps)(m, h, going);
         const mask smaller = (worst < before) & none_of(renewed), lost = none_of(worst < 1e300);
         const mask near = smaller & (worst < NEAR);
         const real left = worst / (before + NO_SIZE);
@@ -1165,6 +1162,11 @@ static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) 
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);
     mask found = MODEL(rough)(m, rule, noise);
     return found;
+}
+
+static mask MODEL(coarse_by_now)(MODEL(block) *m, real h)
+{
+    return m->means ? MODEL(rough_parts)(m, h, &MODEL(few), NULL) : nowhere;
 }
 
 /* The lanes that need more than NODES nodes for balances exact to round-off. */

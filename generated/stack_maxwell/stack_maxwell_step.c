@@ -563,6 +563,7 @@ typedef struct {
 #if defined(PATHS)
     long drives;
     real *path, *drive; /* parameters of path functionals; drives at stages and at a point */
+    real *follows;      /* the fraction of the step in which each inner state follows its coordinate */
     real *yield;
     real surveyed; /* the length of a survey's step; else 0 */
     long solved[PATHS + 1][2]; /* see FOR_SOLVED */
@@ -577,7 +578,7 @@ typedef struct {
 } MODEL(block);
 
 #if defined(PATHS)
-/* Whether a state, a bank's counted once, is the inner state of a path functional of that bank; -1: of any. */
+/* Whether a record of states is the inner states of a bank's path functional. */
 static int MODEL(is_inner)(long record, long bank)
 {
     int found = 0;
@@ -761,8 +762,8 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
 }
 
 /*
- * Replace the right-hand side r (n) by the solution; if `which` is SOLVED, in the states of FOR_SOLVED alone,
- * where the others' right-hand sides are zero.
+ * Replace the right-hand side r (n) by the solution; if `which` is SOLVED, in the states of FOR_SOLVED alone:
+ * those of the others are taken as zero, and neither read nor written.
  */
 static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
                          const NUMBER *restrict f, int which, NUMBER *restrict r)
@@ -889,6 +890,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(slope, m->slopes);
 #if defined(PATHS)
     PLACE(path, PARAMETERS * paths);
+    PLACE(follows, paths);
     PLACE(drive, (STAGES + 1) * m->drives);
     PLACE(yield, YIELD);
 #endif /* PATHS */
@@ -1054,17 +1056,18 @@ enum { SOME = 64, SEEN = 16 };
 
 /*
  * What they have: inner state, stiffness, limit. What they give: for the stages the means of effort,
- * rate of the slip and heat, and the share. On the way: where z is, whether it yields, and since when it
- * follows C; the heat, and where in a piece of the step it comes to its limit.
+ * rate of the slip and heat; the share, and the fraction of the step in which z follows C. On the way:
+ * where z is, whether it yields, and since when it follows C; the heat, and where in a piece of the step
+ * it comes to its limit.
  *
- * The share is for Newton's method: of a change of the rate of C, the same at all times, that of the work
- * which z takes part in. While z follows C for a fraction a of the step, it has moved with C for half of it
- * on the mean: a share of a*a.
+ * The share is for Newton's method: how the mean effort responds to a constant change of dC/dt, relative
+ * to that of a z that follows C all the way. It is a*a if z follows C in one stretch, a fraction a of the
+ * step: a change of C that grows from there on acts for a fraction a, and is a/2 on the mean.
  */
 typedef struct {
     long count;
     double z[SOME], k[SOME], r[SOME];
-    double mean[SHARE][STAGES][SOME], share[SOME];
+    double mean[SHARE][STAGES][SOME], share[SOME], follows[SOME];
     double now[SOME], yields[SOME], since[SOME], heat[SOME], room[SOME], meets[SOME], until[SOME];
     double lead[STAGES][SOME], moved[STAGES][SOME];
 } MODEL(stops);
@@ -1181,6 +1184,7 @@ static void MODEL(pass)(MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(s
         s->heat[j] += s->meets[j] > 0.0 ? beyond : 0.0;
         s->now[j] = s->meets[j] > 0.0 ? limit : s->now[j] + piece->more;
         const double since = s->yields[j] > 0.0 ? piece->low : s->since[j];
+        s->follows[j] += until - piece->low;
         s->share[j] += (until - piece->low) * (until + piece->low - 2.0 * since);
         s->since[j] = since;
         s->yields[j] = s->meets[j];
@@ -1223,7 +1227,7 @@ static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
         const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
         s->now[j] = begin;
         s->heat[j] = 0.5 * s->k[j] * (z - begin) * (z + begin);
-        s->share[j] = s->yields[j] = s->since[j] = 0.0;
+        s->share[j] = s->follows[j] = s->yields[j] = s->since[j] = 0.0;
     }
     if (!w->pieces)
         MODEL(find_turns)(w);
@@ -1292,7 +1296,8 @@ static inline real MODEL(share_of)(const MODEL(course) *c, real limit, real z, r
  */
 static inline real MODEL(stage_in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes, long i,
                                                const real *restrict z, const real *restrict parameter,
-                                               real *first_given, real *restrict rate)
+                                               real *first_given, real *restrict rate,
+                                               real *restrict follows)
 {
     const real *restrict const k = parameter + STIFFNESS * lanes;
     const real *restrict const r = parameter + LIMIT * lanes;
@@ -1311,6 +1316,8 @@ static inline real MODEL(stage_in_closed_form)(const MODEL(block) *m, const MODE
         const real there = z[j] + at_stage, yields = chosen(part == 0.0, wide(1.0), zero);
         const real force = k[j] * chosen(part == 0.0, limit, there);
         share[j] = part;
+        if (!i)
+            follows[j] = part;
         effort[j] = force;
         slip[j] = yields * (drive - put);
         heat[j] = yields * (force * drive);
@@ -1322,18 +1329,18 @@ static inline real MODEL(stage_in_closed_form)(const MODEL(block) *m, const MODE
 
 /* The same for all stages. */
 static real MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes, const real *z,
-                                  const real *parameter, real *given, real *rates)
+                                  const real *parameter, real *given, real *rates, real *follows)
 {
-    const real others = MODEL(stage_in_closed_form)(m, c, lanes, 0, z, parameter, given, rates);
+    const real others = MODEL(stage_in_closed_form)(m, c, lanes, 0, z, parameter, given, rates, follows);
     for (long i = 1; i < STAGES; ++i)
-        MODEL(stage_in_closed_form)(m, c, lanes, i, z, parameter, given, rates + i * m->n);
+        MODEL(stage_in_closed_form)(m, c, lanes, i, z, parameter, given, rates + i * m->n, follows);
     return others;
 }
 
 /* Compute stops of one coordinate, lanes `which` of a bank, in one lane of numbers. */
 static void MODEL(along_path)(const MODEL(block) *m, MODEL(coordinate) *w, MODEL(stops) *s, const long *which,
                               long lanes, int lane, const real *z, const real *parameter, real *given,
-                              real *rates)
+                              real *rates, real *follows)
 {
     for (long k = 0; k < s->count; ++k) {
         s->z[k] = LANE(z, which[k], lane);
@@ -1341,6 +1348,8 @@ static void MODEL(along_path)(const MODEL(block) *m, MODEL(coordinate) *w, MODEL
         s->r[k] = LANE(parameter, LIMIT * lanes + which[k], lane);
     }
     MODEL(stop)(w, s);
+    for (long k = 0; k < s->count; ++k)
+        LANE(follows, which[k], lane) = s->follows[k];
     for (long i = 0; i < STAGES; ++i)
         for (long k = 0; k < s->count; ++k) {
             const long j = which[k];
@@ -1353,7 +1362,7 @@ static void MODEL(along_path)(const MODEL(block) *m, MODEL(coordinate) *w, MODEL
 
 /* The same for those of a bank's lanes that are not in closed form: their share is negative. */
 static void MODEL(along_others)(const MODEL(block) *m, MODEL(coordinate) *w, long lanes, int lane,
-                                const real *z, const real *parameter, real *given, real *rates)
+                                const real *z, const real *parameter, real *given, real *rates, real *follows)
 {
     const real *const share = given + SHARE * lanes;
     MODEL(stops) some;
@@ -1370,7 +1379,7 @@ static void MODEL(along_others)(const MODEL(block) *m, MODEL(coordinate) *w, lon
             some.count += LANE(share, k, lane) < 0.0;
         }
         if (some.count + SEEN > SOME || (end == lanes && some.count)) {
-            MODEL(along_path)(m, w, &some, which, lanes, lane, z, parameter, given, rates);
+            MODEL(along_path)(m, w, &some, which, lanes, lane, z, parameter, given, rates, follows);
             some.count = 0;
         }
     }
@@ -1378,14 +1387,15 @@ static void MODEL(along_others)(const MODEL(block) *m, MODEL(coordinate) *w, lon
 
 /* Each lane of a bank by itself, from drive number `drive` on: each has a coordinate of its own if `own`. */
 static void MODEL(along_each)(const MODEL(block) *m, MODEL(coordinate) *w, long drive, int own, long lanes,
-                              int lane, const real *z, const real *parameter, real *given, real *rates)
+                              int lane, const real *z, const real *parameter, real *given, real *rates,
+                              real *follows)
 {
     MODEL(stops) one;
     one.count = 1;
     for (long j = 0; j < lanes; ++j) {
         if (j && own)
             MODEL(find_coordinate)(m, w->h, drive + j, lane, w);
-        MODEL(along_path)(m, w, &one, &j, lanes, lane, z, parameter, given, rates);
+        MODEL(along_path)(m, w, &one, &j, lanes, lane, z, parameter, given, rates, follows);
     }
 }
 
@@ -1408,13 +1418,13 @@ static void MODEL(find_drives)(const MODEL(block) *m, real h)
 }
 
 /*
- * What path functionals give to the stages. Rates of inner states are set, not solved for: efforts
- * follow from the drives alone, and Newton's method takes them as stiffness * z.
+ * What path functionals give to the stages. Rates of inner states are set, not solved for: they follow
+ * from the drives, and Newton's method takes efforts as stiffness * z.
  */
 static void MODEL(along_paths)(const MODEL(block) *m, real h)
 {
     const real *parameter = m->path;
-    real *given = m->mean + m->means;
+    real *given = m->mean + m->means, *follows = m->follows;
     long drive = 0;
     m->yield[EARLIEST] = wide(1.0);
     m->yield[HOW_OFTEN] = zero;
@@ -1434,18 +1444,19 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
         real others = zero;
         if (together) {
             const MODEL(course) c = MODEL(course_of)(w, h);
-            others = MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
+            others = MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates, follows);
         }
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             MODEL(coordinate) *const coordinate = w + lane;
             if (OF(others, lane) > 0.0)
-                MODEL(along_others)(m, coordinate, lanes, lane, z, parameter, given, rates);
+                MODEL(along_others)(m, coordinate, lanes, lane, z, parameter, given, rates, follows);
             else if (!together)
-                MODEL(along_each)(m, coordinate, drive, path[OWN], lanes, lane, z, parameter, given, rates);
+                MODEL(along_each)(m, coordinate, drive, path[OWN], lanes, lane, z, parameter, given, rates,
+                                  follows);
             LANE(m->yield, EARLIEST, lane) = coordinate->yields;
             LANE(m->yield, HOW_OFTEN, lane) = coordinate->times;
         }
-        given += GIVEN * lanes, parameter += PARAMETERS * lanes;
+        given += GIVEN * lanes, parameter += PARAMETERS * lanes, follows += lanes;
         drive += path[OWN] ? lanes : 1;
     }
 }
@@ -1455,13 +1466,13 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
  * which it yields, slip follows the drive there: an inner state that does not move has no misfit.
  */
 static void MODEL(of_stages)(const MODEL(block) *m, const double *weight, long lanes, const real *drives,
-                             int own, real *restrict given)
+                             const real *follows, int own, real *restrict given)
 {
     const real *const mean = m->mean + (given - m->node);
 #pragma omp simd
     for (long j = 0; j < lanes; ++j) {
         const real *const drive = drives + own * j;
-        const real yields = 1.0 - mean[SHARE * lanes + j];
+        const real yields = 1.0 - follows[j];
         real slip = yields * drive[STAGES * m->drives], heat = zero;
         for (long i = 0; i < STAGES; ++i) {
             const real *const stage = mean + i * m->given + j;
@@ -1505,7 +1516,7 @@ static void MODEL(stand)(const MODEL(block) *m, const real *restrict begin, cons
 static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
                             const double *weight)
 {
-    const real *parameter = m->path, *drives = m->drive;
+    const real *parameter = m->path, *drives = m->drive, *follows = m->follows;
     real *given = m->node + m->means;
     MODEL(path_parameters)(x, &m->p, m->path);
     MODEL(drives)(x, m->node, branch, u, &m->p, m->drive + STAGES * m->drives);
@@ -1515,8 +1526,8 @@ static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *br
         const real *const begin = (any(m->surveyed > 0.0) ? m->x : x) + first;
         MODEL(stand)(m, begin, parameter, drives + STAGES * m->drives, own, lanes, given);
         if (weight)
-            MODEL(of_stages)(m, weight, lanes, drives, own, given);
-        given += GIVEN * lanes, parameter += PARAMETERS * lanes;
+            MODEL(of_stages)(m, weight, lanes, drives, follows, own, given);
+        given += GIVEN * lanes, parameter += PARAMETERS * lanes, follows += lanes;
         drives += own ? lanes : 1;
     }
 }
@@ -1775,8 +1786,8 @@ static mask MODEL(solves)(const MODEL(block) *m, real h, real *residual)
     return unsolved == 0.0;
 }
 
-/* The lanes whose means need more nodes; see nodes.c. */
-static mask MODEL(coarse)(const MODEL(block) *m, real h);
+/* The lanes whose means need more nodes, by the rates at hand; see nodes.c. */
+static mask MODEL(coarse_by_now)(MODEL(block) *m, real h);
 
 /*
  * The lanes in which a stage lies beyond a switch, by the rates at hand. Their steps will be cut
@@ -1841,14 +1852,11 @@ static mask MODEL(iterate)(MODEL(block) *m, real h, mask where)
         const real part = iteration && m->late > SOON ? MODEL(damping)(m) : (real)wide(1.0);
         const real worst = MODEL(changed)(m, h, part, going);
         const mask far = going & (worst > FAR) & none_of(m->fine);
-        mask switched = MODEL(gaps)(m, h, going);
-        if (iteration > 2)
+        if (iteration == 1 && !LOSSY && any(far))
+            m->fine |= renewed = far & MODEL(coarse_by_now)(m, h);
+        else if (iteration > 2)
             renewed = nowhere;
-        if (iteration == 1 && !LOSSY && any(far)) {
-            m->fine |= renewed = far & MODEL(coarse)(m, h);
-            if (any(renewed))
-                switched |= MODEL(gaps)(m, h, going);
-        }
+        const mask switched = MODEL(gaps)(m, h, going);
         const mask smaller = (worst < before) & none_of(renewed), lost = none_of(worst < 1e300);
         const mask near = smaller & (worst < NEAR);
         const real left = worst / (before + NO_SIZE);
@@ -1938,6 +1946,11 @@ static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) 
     MODEL(integrate)(m, h, rule->nodes == FINE ? FINE_REACH : NODE_REACH, rule->nodes);
     mask found = MODEL(rough)(m, rule, noise);
     return found;
+}
+
+static mask MODEL(coarse_by_now)(MODEL(block) *m, real h)
+{
+    return m->means ? MODEL(rough_parts)(m, h, &MODEL(few), NULL) : nowhere;
 }
 
 /* The lanes that need more than NODES nodes for balances exact to round-off. */

@@ -1,31 +1,27 @@
 """Events of a run: times at which expressions change sign, to round-off; and when it stops.
 
-Input: expressions in the language of laws over states, inputs, `y_<port>`, `T_<body>`,
-`<element>.<quantity>` and parameters, and a function that samples the run at any times.  Output:
-the times of each event, and when the run stops.
+Input: what is watched, and a function that samples the run at any times.  Output: the times of
+each event, and when the run stops.
 
 A sample is a step of its own from the last accepted state, so more samples do not change the run:
 it is sampled at the user's times and four times per step, then again where signs change.
 """
 
-import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, Self, TypeAlias, final
 
 import numpy as np
 
-from piezo_sym.errors import PiezoError, UsageError, nearest, quote
+from piezo_sym.errors import UsageError, quote
 from piezo_sym.expressions.exact_eval import evaluate
-from piezo_sym.expressions.incomplete import CONSTANTS, OR, conditions_of
-from piezo_sym.expressions.parse import parse_condition, parse_law
-from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Add, Call, Expr, Neg, names, rename
+from piezo_sym.expressions.tree import Expr, names
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.dataset import Evaluation, Trajectory, attributes, element_remedy
-from piezo_sym.run.module import row_names, rows
+from piezo_sym.run.dataset import Evaluation, Trajectory, attributes
+from piezo_sym.run.module import rows
 from piezo_sym.run.system import DrivenModule
+from piezo_sym.run.watched import Watched, quantity_names
 
 #: Returns the given times that the run reaches, and the run there.
 Sampler: TypeAlias = Callable[[FloatArray], tuple[FloatArray, Trajectory]]
@@ -33,34 +29,10 @@ Sampler: TypeAlias = Callable[[FloatArray], tuple[FloatArray, Trajectory]]
 PER_STEP, LEAST, MOST = 4, 1000, 20_000
 #: How the description of the times of an event begins.
 EVENT = "times of event"
-KNOWN = "a state, input, y_<port>, T_<body> or parameter"
-#: A quantity of an element, as `spring.effort`: no name of the language of laws.
-QUANTITY = re.compile(r"\b([A-Za-z_]\w*)\.([A-Za-z_]\w*)")
-#: A number with a unit, which the language does not have either.
-WITH_UNIT = re.compile(r"(?<![\w.])(\d+\.?\d*(?:[eE][-+]?\d+)?) ?([^\W\d_]+(?:/[^\W\d_]+)*)")
 #: Samples inside a bracket in one pass: around the zero of the chord, at these fractions of the
 #: bracket to either side; or evenly, where that did not narrow it by LITTLE. The most passes.
 AROUND = 2.0 ** np.array([-4.0, -12.0, -24.0, -40.0])
 EVEN, LITTLE, ROUNDS = 63, 1 / 16, 24
-
-
-@final
-@dataclass(frozen=True)
-class Watched:
-    """Events (name -> expression), and the condition that ends a run.
-
-    `stop` is positive where `condition`, its text, holds. `signs` are those of the events at the
-    last sample so far, with which the next window of a run goes on.
-    """
-
-    event: Mapping[str, Expr]
-    stop: Expr | None
-    condition: str = ""
-    signs: dict[str, float] = field(default_factory=dict)
-
-    def __bool__(self) -> bool:
-        """Return whether there is an event or a condition."""
-        return bool(self.event) or self.stop is not None
 
 
 @final
@@ -70,108 +42,6 @@ class Located:
 
     times: Mapping[str, FloatArray]
     end: float | None
-
-
-def read_watched(system: DrivenModule, events: object, stop: object, step: object) -> Watched:
-    """Return a user's events and condition; raise `UsageError` for a run with a fixed step."""
-    given = {} if events is None else events
-    if not isinstance(given, Mapping):
-        expected = 'name -> expression, such as {"hit": "q - 1e-3"}'
-        raise UsageError(f"{quote(given)} is no mapping", "simulate.events", expected)
-    if step is not None and (given or stop is not None):
-        what = "with a fixed step, events are not located"
-        raise UsageError(what, "simulate.step", "rtol", "leave out step, or events and stop")
-    known = _quantity_names(system)
-    laws = {}
-    for name, text in given.items():
-        where = f"simulate.events.{name}"
-        if not isinstance(name, str) or not name.isidentifier() or name in {*known, "time"}:
-            why = ": the run has a quantity of that name" if name in {*known, "time"} else ""
-            what = f"{quote(name)} cannot name an event{why}"
-            raise UsageError(what, "simulate.events", "a new name of letters, digits and _")
-        law = _parsed(parse_law, text, where, '"q - 1e-3"', "{}")
-        laws[name] = _check_names(law, known, where)
-    if stop is None:
-        return Watched(laws, None)
-    where = "simulate.stop"
-    margin = _parsed(_margin, stop, where, '"T_body > 350"', "{} > 0")
-    return Watched(laws, _check_names(margin, known, where), str(stop))
-
-
-def _margin(text: str, where: str) -> Expr:
-    """Return what is positive where a comparison holds."""
-    condition = parse_condition(text, where)
-    sides = condition.left, condition.right
-    more, less = sides if condition.op in {">", ">="} else sides[::-1]
-    return more if less == ZERO else Add((more, Neg(less)))
-
-
-def _margin_of_several(text: str, where: str) -> Expr:
-    """Return what is positive where comparisons hold that are joined by 'and' or 'or'."""
-    for function, parts in (("max", OR.split(text, maxsplit=1)), ("min", conditions_of(text))):
-        if len(parts) > 1:
-            return Call(function, tuple(_margin_of_several(part, where) for part in parts))
-    return _margin(text, where)
-
-
-def _parsed(
-    read: Callable[[str, str], Expr], text: object, where: str, such: str, form: str
-) -> Expr:
-    """Return the parsed text; if only a condition may stand there, the remedy has it in `form`."""
-    if not isinstance(text, str):
-        raise UsageError(f"{quote(text)} is no text", where, f"text such as {such}")
-    plain = QUANTITY.sub(r"_\1_\2", text)  # no spec has such names
-    spelled = {
-        f"_{element}_{word}": f"{element}.{word}" for element, word in QUANTITY.findall(text)
-    }
-    try:
-        return rename(read(plain, where), spelled)
-    except PiezoError as error:
-        said = [error.what, error.expected, error.remedy]
-        with suppress(PiezoError):
-            said[2] = _in_si(text, where) or said[2]
-        with suppress(PiezoError):
-            said[2] = f"write '{form.format(spell(_margin_of_several(plain, where)))}'"
-        for name, own in spelled.items():
-            said = [part.replace(name, own) for part in said]
-        what, expected, remedy = said
-        raise UsageError(what, where, expected, remedy) from error
-
-
-def _in_si(text: str, where: str) -> str:
-    """Return how to write the first number with a unit, as in q > 1um, or ''."""
-    found = WITH_UNIT.search(text)
-    if found is None:
-        return ""
-    from piezo_sym.expressions.units import parse_unit, to_si
-
-    value = to_si(float(found[1]), parse_unit(found[2], where))
-    return f"write numbers in SI: {value:g} for {found[0]}"
-
-
-def _check_names(tree: Expr, words: Sequence[str], where: str) -> Expr:
-    for name in names(tree):
-        if name not in words:
-            dotted = tuple(word for word in words if "." in word)
-            own = (word for word in words if word not in dotted)
-            remedy = element_remedy(name, dotted) if "." in name else ""
-            remedy = remedy or CONSTANTS.get(name) or nearest(name, own)
-            what = f"events and stop know no {quote(name)}"
-            expected = f"{KNOWN}, or a quantity of an element, such as '{dotted[0]}'"
-            raise UsageError(what, where, expected, remedy)
-    return tree
-
-
-def _quantity_names(system: DrivenModule) -> list[str]:
-    module, p = system.module, system.parameters
-    return [
-        *row_names(module.STATES, p),
-        *(record.name for record in module.INPUTS),
-        *(f"y_{record.name}" for record in module.OUTPUTS),
-        *(f"T_{record.name}" for record in module.BODIES),
-        *row_names(module.PARAMETERS, p),
-        *row_names(module.ELEMENTS, p),
-    ]
 
 
 def _quantity_values(
@@ -187,7 +57,7 @@ def _quantity_values(
     ]
     values = [*x, *u, *module.outputs(x, u, p), *module.temperatures(x, p), *fixed]
     values += [*module.elements(x, u, p)] if any("." in name for name in wanted) else []
-    named = zip(_quantity_names(system), values, strict=False)
+    named = zip(quantity_names(system), values, strict=False)
     return {n: np.broadcast_to(row, x.shape[1]).tolist() for n, row in named if n in wanted}
 
 
@@ -210,13 +80,14 @@ def locate(
     times, seen = run(np.union1d(samples, even))
     brackets: list[_Bracket] = []
     if watched.stop:
-        margin = values_of(system, watched.stop, seen)
+        margin = _at_edge(values_of(system, watched.stop, seen), closed=watched.closed)
         if margin[0] > 0:
             what = f"the condition holds at t = {times[0]:g} s already"
             raise UsageError(what, "simulate.stop", "one that does not hold at the start")
         first = np.flatnonzero(margin > 0)[:1].tolist()
         pairs = (slice(k - 1, k + 1) for k in first)
-        brackets += [_Bracket("", watched.stop, times[pair], margin[pair]) for pair in pairs]
+        found = (("", watched.stop, times[pair], margin[pair]) for pair in pairs)
+        brackets += [_Bracket(*values, closed=watched.closed) for values in found]
     for name, tree in watched.event.items():
         values = values_of(system, tree, seen)
         signs = _signs(np.append(watched.signs.get(name, 0.0), values))
@@ -229,6 +100,11 @@ def locate(
     kept = [(name, t) for name, t in located if end is None or t <= end]
     times_of = {name: np.array([t for n, t in kept if n == name]) for name in watched.event}
     return Located(times_of, end)
+
+
+def _at_edge(values: FloatArray, *, closed: bool) -> FloatArray:
+    """Return values, positive in place of zero if the edge of a condition belongs to it."""
+    return np.where(values == 0.0, np.finfo(float).tiny, values) if closed else values
 
 
 def _signs(values: FloatArray) -> FloatArray:
@@ -247,6 +123,7 @@ class _Bracket:
     times: FloatArray
     values: FloatArray
     evenly: bool = False
+    closed: bool = False
 
     def inner(self) -> FloatArray:
         """Return the times between the two to sample next."""
@@ -264,6 +141,7 @@ class _Bracket:
         """Return the bracket between the two of these times where the sign changes."""
         first, last = np.searchsorted(times, self.times)
         times, values = times[first : last + 1], values[first : last + 1]
+        values = _at_edge(values, closed=self.closed)
         signs = _signs(values)
         k = int(np.argmax(signs == signs[-1])) or times.size - 1
         evenly = times[k] - times[k - 1] > LITTLE * (times[-1] - times[0])

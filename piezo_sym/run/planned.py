@@ -19,7 +19,7 @@ from piezo_sym.run.collocation import METHOD, FixedStep, Watch, collocate, stage
 from piezo_sym.run.dataset import Trajectory, element_variables, to_dataset
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import Engine
-from piezo_sym.run.events import Watched, event_variables, locate
+from piezo_sym.run.events import event_variables, locate
 from piezo_sym.run.guard import SLACK, check_inputs, check_start
 from piezo_sym.run.inputs import InputValue, read_inputs
 from piezo_sym.run.method import ChosenMethod
@@ -27,6 +27,7 @@ from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue, read_initial
 from piezo_sym.run.scipy_runs import by_scipy, stop_cause
 from piezo_sym.run.system import DrivenModule
+from piezo_sym.run.watched import Watched
 
 if TYPE_CHECKING:
     import xarray

@@ -20,10 +20,10 @@ from piezo_sym.errors import FileError, RunError, UsageError, quote
 from piezo_sym.files import consolidate, path_text, zarr_library
 from piezo_sym.interrupts import held_back
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.events import read_watched
 from piezo_sym.run.module import row_count
 from piezo_sym.run.parameters import LaneValue
 from piezo_sym.run.planned import Request
+from piezo_sym.run.watched import read_watched
 
 if TYPE_CHECKING:
     import xarray

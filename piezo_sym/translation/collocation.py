@@ -112,9 +112,12 @@ def _paths(
     values: dict[Key, Value],
 ) -> Iterator[tuple[str, str | None, bool]]:
     """Yield each stop's row of the table; add the rows of its parameters and its drive."""
+    inner = {part for _, store, _ in stops for part in read.names[store.state].parts}
     for n, (placed, store, slip) in enumerate(stops):
         slope, drive = derivative(store.law, store.state), read(read.iphs.symbols[slip.rate])
         assert slip.limit is not None
+        if not inner.isdisjoint(drive.parts):
+            raise NotShownError(f"what drives {placed.element} depends on the states of stops")
         parts = read.law(slope), read.law(div(slip.limit, slope))
         values |= {("path_parameters", 2 * n + k): value for k, value in enumerate(parts)}
         values["drives", n] = drive

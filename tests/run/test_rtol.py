@@ -159,3 +159,46 @@ def test_no_step_misses_a_steep_part_of_a_law(friction):
         run = simulate(parse(STEEP), rtol=rtol, **options)
         parts = np.abs(run[["q", "p"]].to_array() - wanted) / np.abs(wanted).max(axis=1)[:, None]
         assert parts.max() <= 10 * rtol, rtol
+
+
+#: A thermistor that its current warms up over many periods; its temperature bounds the current.
+BEAD = """
+[model]
+name = "bead"
+[parameters]
+L = { value = 0.05, unit = "H" }
+R_0 = { value = 1.0, unit = "ohm" }
+R_s = { value = 0.05, unit = "ohm" }
+B = { value = 2000.0, unit = "K" }
+c = { value = 0.1, unit = "J/K" }
+T_1 = { value = 1.0, unit = "K", doc = "so that entropies are large from the start" }
+T_0 = { value = 300.0, unit = "K" }
+lam = { value = 0.01, unit = "W/K" }
+[inputs]
+V = { unit = "V" }
+T_e = { unit = "K", default = 300.0 }
+[domain]
+assume = ["T_0 > 0", "T_1 > 0", "R_0 > 0", "R_s > 0", "lam >= 0", "T_e > 0"]
+[initial]
+S = "c*log(T_0/T_1)"
+[elements]
+supply = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
+coil = { kind = "inductor", between = ["in", "a"], inductance = "L", state = "phi" }
+shunt = { kind = "resistor", between = ["b", "gnd"], voltage = "R_s*i", heats = "body" }
+body = { kind = "thermal_mass", temperature = "T_1*exp(S/c)", state = "S" }
+air = { kind = "ambient", body = "body", conductance = "lam", input = "T_e" }
+[elements.bead]
+kind = "resistor"
+between = ["a", "b"]
+voltage = "R_0*exp(B*(1/T - 1/T_0))*i"
+heats = "body"
+"""
+
+
+def test_a_body_that_warms_up_over_thousands_of_periods_is_measured_by_what_it_reaches():
+    """The survey leaps over most periods; were all surveyed, errors would be as small."""
+    how = {"inputs": {"V": sine(0.3, 1.0)}, "duration": 2000.0, "times": 4001}
+    fine, found = (simulate(parse(BEAD), rtol=rtol, **how) for rtol in (1e-9, 1e-4))
+    for name in ("phi", "S"):
+        size = np.abs(fine[name].values).max()
+        assert np.abs(found[name].values - fine[name].values).max() <= 0.3 * 1e-4 * size

@@ -230,3 +230,51 @@ def test_parameters_of_banks_are_watched_lane_by_lane():
     same = simulate("piezo_stack", events={"by_number": "phi_2/(2/1000) - 1/2"}, **given)
     assert run.by_name.size > 0
     assert np.allclose(run.by_name, same.by_number, rtol=1e-12)
+
+
+#: A stop that a ramp pushes against, and how its effort comes to its limit and stays there.
+PUSHED = """
+[model]
+name = "pushed"
+[parameters]
+k = { value = 3.0, unit = "N/m" }
+F_c = { value = 0.7, unit = "N" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 1.0, unit = "J/K" }
+[inputs]
+v_in = { unit = "m/s" }
+[elements]
+drive = { kind = "velocity_source", at = "tip", input = "v_in" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+[elements.block]
+kind = "stop"
+between = ["tip", "wall"]
+stiffness = "k"
+limit = "F_c"
+heats = "body"
+state = "z"
+"""
+
+
+@pytest.mark.parametrize(
+    "stop", ["block.effort >= block.limit", "block.effort >= 0.7", "F_c <= k*z"]
+)
+def test_a_condition_that_holds_with_equality_is_met(stop):
+    run = simulate(load_text(PUSHED), inputs={"v_in": 0.5}, duration=1.0, stop=stop)
+    assert float(run.time[-1]) == pytest.approx(0.7 / 3.0 / 0.5, rel=1e-9)
+
+
+def test_one_without_equality_is_not_met_at_its_edge():
+    run = simulate(
+        load_text(PUSHED), inputs={"v_in": ([0, 1, 2], [0, 1, 1])}, duration=2.0, stop="v_in > 1"
+    )
+    assert "stopped" not in run.attrs or not run.attrs["stopped"]
+    run = simulate(
+        load_text(PUSHED), inputs={"v_in": ([0, 1, 2], [0, 1, 1])}, duration=2.0, stop="v_in >= 1"
+    )
+    assert float(run.time[-1]) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_one_that_holds_with_equality_at_the_start_holds_already():
+    with pytest.raises(UsageError, match="holds at t = 0 s already"):
+        simulate(load_text(PUSHED), inputs={"v_in": 0.5}, duration=1.0, stop="z >= 0")

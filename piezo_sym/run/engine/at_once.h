@@ -12,7 +12,7 @@ void MODEL(stages_at_once)(const void *space, const double *x, const double *mea
                            double *side, double *margin);
 void MODEL(costates_at_once)(const void *space, const double *x, const double *mean, double *costate);
 void MODEL(nodes_at_once)(const void *space, const double *x, double *value);
-/* The values of a wave, by its numbers, at the times t. */
+/* The values of a sine at the times t, by the numbers of its MODEL(wave) in one lane. */
 void MODEL(sines_at_once)(const double *wave, const double *t, double *value);
 #if defined(__GNUC__) && !defined(_WIN32)
 #pragma GCC visibility pop

@@ -119,8 +119,8 @@ static void NAMED(factorise)(const MODEL(block) *m, NUMBER gamma, const real *sl
 }
 
 /*
- * Replace the right-hand side r (n) by the solution; if `which` is SOLVED, in the states of FOR_SOLVED alone,
- * where the others' right-hand sides are zero.
+ * Replace the right-hand side r (n) by the solution; if `which` is SOLVED, in the states of FOR_SOLVED alone:
+ * those of the others are taken as zero, and neither read nor written.
  */
 static void NAMED(solve)(const MODEL(block) *m, NUMBER gamma, const real *slopes,
                          const NUMBER *restrict f, int which, NUMBER *restrict r)

@@ -71,6 +71,7 @@ typedef struct {
 #if defined(PATHS)
     long drives;
     real *path, *drive; /* parameters of path functionals; drives at stages and at a point */
+    real *follows;      /* the fraction of the step in which each inner state follows its coordinate */
     real *yield;
     real surveyed; /* the length of a survey's step; else 0 */
     long solved[PATHS + 1][2]; /* see FOR_SOLVED */
@@ -105,7 +106,7 @@ typedef struct {
 } MODEL(block);
 
 #if defined(PATHS)
-/* Whether a state, a bank's counted once, is the inner state of a path functional of that bank; -1: of any. */
+/* Whether a record of states is the inner states of a bank's path functional. */
 static int MODEL(is_inner)(long record, long bank)
 {
     int found = 0;
@@ -269,6 +270,7 @@ static long MODEL(make)(MODEL(block) *m, const MODEL(parameters) *p, long more, 
     PLACE(slope, m->slopes);
 #if defined(PATHS)
     PLACE(path, PARAMETERS * paths);
+    PLACE(follows, paths);
     PLACE(drive, (STAGES + 1) * m->drives);
     PLACE(yield, YIELD);
 #endif /* PATHS */

@@ -70,6 +70,11 @@ static mask MODEL(rough_parts)(const MODEL(block) *m, real h, const MODEL(rule) 
     return found;
 }
 
+static mask MODEL(coarse_by_now)(MODEL(block) *m, real h)
+{
+    return m->means ? MODEL(rough_parts)(m, h, &MODEL(few), NULL) : nowhere;
+}
+
 /* The lanes that need more than NODES nodes for balances exact to round-off. */
 static mask MODEL(coarse)(const MODEL(block) *m, real h)
 {

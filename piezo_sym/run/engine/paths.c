@@ -50,7 +50,8 @@ static inline real MODEL(share_of)(const MODEL(course) *c, real limit, real z, r
  */
 static inline real MODEL(stage_in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes, long i,
                                                const real *restrict z, const real *restrict parameter,
-                                               real *first_given, real *restrict rate)
+                                               real *first_given, real *restrict rate,
+                                               real *restrict follows)
 {
     const real *restrict const k = parameter + STIFFNESS * lanes;
     const real *restrict const r = parameter + LIMIT * lanes;
@@ -69,6 +70,8 @@ static inline real MODEL(stage_in_closed_form)(const MODEL(block) *m, const MODE
         const real there = z[j] + at_stage, yields = chosen(part == 0.0, wide(1.0), zero);
         const real force = k[j] * chosen(part == 0.0, limit, there);
         share[j] = part;
+        if (!i)
+            follows[j] = part;
         effort[j] = force;
         slip[j] = yields * (drive - put);
         heat[j] = yields * (force * drive);
@@ -80,18 +83,18 @@ static inline real MODEL(stage_in_closed_form)(const MODEL(block) *m, const MODE
 
 /* The same for all stages. */
 static real MODEL(in_closed_form)(const MODEL(block) *m, const MODEL(course) *c, long lanes, const real *z,
-                                  const real *parameter, real *given, real *rates)
+                                  const real *parameter, real *given, real *rates, real *follows)
 {
-    const real others = MODEL(stage_in_closed_form)(m, c, lanes, 0, z, parameter, given, rates);
+    const real others = MODEL(stage_in_closed_form)(m, c, lanes, 0, z, parameter, given, rates, follows);
     for (long i = 1; i < STAGES; ++i)
-        MODEL(stage_in_closed_form)(m, c, lanes, i, z, parameter, given, rates + i * m->n);
+        MODEL(stage_in_closed_form)(m, c, lanes, i, z, parameter, given, rates + i * m->n, follows);
     return others;
 }
 
 /* Compute stops of one coordinate, lanes `which` of a bank, in one lane of numbers. */
 static void MODEL(along_path)(const MODEL(block) *m, MODEL(coordinate) *w, MODEL(stops) *s, const long *which,
                               long lanes, int lane, const real *z, const real *parameter, real *given,
-                              real *rates)
+                              real *rates, real *follows)
 {
     for (long k = 0; k < s->count; ++k) {
         s->z[k] = LANE(z, which[k], lane);
@@ -99,6 +102,8 @@ static void MODEL(along_path)(const MODEL(block) *m, MODEL(coordinate) *w, MODEL
         s->r[k] = LANE(parameter, LIMIT * lanes + which[k], lane);
     }
     MODEL(stop)(w, s);
+    for (long k = 0; k < s->count; ++k)
+        LANE(follows, which[k], lane) = s->follows[k];
     for (long i = 0; i < STAGES; ++i)
         for (long k = 0; k < s->count; ++k) {
             const long j = which[k];
@@ -111,7 +116,7 @@ static void MODEL(along_path)(const MODEL(block) *m, MODEL(coordinate) *w, MODEL
 
 /* The same for those of a bank's lanes that are not in closed form: their share is negative. */
 static void MODEL(along_others)(const MODEL(block) *m, MODEL(coordinate) *w, long lanes, int lane,
-                                const real *z, const real *parameter, real *given, real *rates)
+                                const real *z, const real *parameter, real *given, real *rates, real *follows)
 {
     const real *const share = given + SHARE * lanes;
     MODEL(stops) some;
@@ -128,7 +133,7 @@ static void MODEL(along_others)(const MODEL(block) *m, MODEL(coordinate) *w, lon
             some.count += LANE(share, k, lane) < 0.0;
         }
         if (some.count + SEEN > SOME || (end == lanes && some.count)) {
-            MODEL(along_path)(m, w, &some, which, lanes, lane, z, parameter, given, rates);
+            MODEL(along_path)(m, w, &some, which, lanes, lane, z, parameter, given, rates, follows);
             some.count = 0;
         }
     }
@@ -136,14 +141,15 @@ static void MODEL(along_others)(const MODEL(block) *m, MODEL(coordinate) *w, lon
 
 /* Each lane of a bank by itself, from drive number `drive` on: each has a coordinate of its own if `own`. */
 static void MODEL(along_each)(const MODEL(block) *m, MODEL(coordinate) *w, long drive, int own, long lanes,
-                              int lane, const real *z, const real *parameter, real *given, real *rates)
+                              int lane, const real *z, const real *parameter, real *given, real *rates,
+                              real *follows)
 {
     MODEL(stops) one;
     one.count = 1;
     for (long j = 0; j < lanes; ++j) {
         if (j && own)
             MODEL(find_coordinate)(m, w->h, drive + j, lane, w);
-        MODEL(along_path)(m, w, &one, &j, lanes, lane, z, parameter, given, rates);
+        MODEL(along_path)(m, w, &one, &j, lanes, lane, z, parameter, given, rates, follows);
     }
 }
 
@@ -166,13 +172,13 @@ static void MODEL(find_drives)(const MODEL(block) *m, real h)
 }
 
 /*
- * What path functionals give to the stages. Rates of inner states are set, not solved for: efforts
- * follow from the drives alone, and Newton's method takes them as stiffness * z.
+ * What path functionals give to the stages. Rates of inner states are set, not solved for: they follow
+ * from the drives, and Newton's method takes efforts as stiffness * z.
  */
 static void MODEL(along_paths)(const MODEL(block) *m, real h)
 {
     const real *parameter = m->path;
-    real *given = m->mean + m->means;
+    real *given = m->mean + m->means, *follows = m->follows;
     long drive = 0;
     m->yield[EARLIEST] = wide(1.0);
     m->yield[HOW_OFTEN] = zero;
@@ -192,18 +198,19 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
         real others = zero;
         if (together) {
             const MODEL(course) c = MODEL(course_of)(w, h);
-            others = MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates);
+            others = MODEL(in_closed_form)(m, &c, lanes, z, parameter, given, rates, follows);
         }
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
             MODEL(coordinate) *const coordinate = w + lane;
             if (OF(others, lane) > 0.0)
-                MODEL(along_others)(m, coordinate, lanes, lane, z, parameter, given, rates);
+                MODEL(along_others)(m, coordinate, lanes, lane, z, parameter, given, rates, follows);
             else if (!together)
-                MODEL(along_each)(m, coordinate, drive, path[OWN], lanes, lane, z, parameter, given, rates);
+                MODEL(along_each)(m, coordinate, drive, path[OWN], lanes, lane, z, parameter, given, rates,
+                                  follows);
             LANE(m->yield, EARLIEST, lane) = coordinate->yields;
             LANE(m->yield, HOW_OFTEN, lane) = coordinate->times;
         }
-        given += GIVEN * lanes, parameter += PARAMETERS * lanes;
+        given += GIVEN * lanes, parameter += PARAMETERS * lanes, follows += lanes;
         drive += path[OWN] ? lanes : 1;
     }
 }
@@ -213,13 +220,13 @@ static void MODEL(along_paths)(const MODEL(block) *m, real h)
  * which it yields, slip follows the drive there: an inner state that does not move has no misfit.
  */
 static void MODEL(of_stages)(const MODEL(block) *m, const double *weight, long lanes, const real *drives,
-                             int own, real *restrict given)
+                             const real *follows, int own, real *restrict given)
 {
     const real *const mean = m->mean + (given - m->node);
 #pragma omp simd
     for (long j = 0; j < lanes; ++j) {
         const real *const drive = drives + own * j;
-        const real yields = 1.0 - mean[SHARE * lanes + j];
+        const real yields = 1.0 - follows[j];
         real slip = yields * drive[STAGES * m->drives], heat = zero;
         for (long i = 0; i < STAGES; ++i) {
             const real *const stage = mean + i * m->given + j;
@@ -263,7 +270,7 @@ static void MODEL(stand)(const MODEL(block) *m, const real *restrict begin, cons
 static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *branch, const real *u,
                             const double *weight)
 {
-    const real *parameter = m->path, *drives = m->drive;
+    const real *parameter = m->path, *drives = m->drive, *follows = m->follows;
     real *given = m->node + m->means;
     MODEL(path_parameters)(x, &m->p, m->path);
     MODEL(drives)(x, m->node, branch, u, &m->p, m->drive + STAGES * m->drives);
@@ -273,8 +280,8 @@ static void MODEL(standing)(const MODEL(block) *m, const real *x, const real *br
         const real *const begin = (any(m->surveyed > 0.0) ? m->x : x) + first;
         MODEL(stand)(m, begin, parameter, drives + STAGES * m->drives, own, lanes, given);
         if (weight)
-            MODEL(of_stages)(m, weight, lanes, drives, own, given);
-        given += GIVEN * lanes, parameter += PARAMETERS * lanes;
+            MODEL(of_stages)(m, weight, lanes, drives, follows, own, given);
+        given += GIVEN * lanes, parameter += PARAMETERS * lanes, follows += lanes;
         drives += own ? lanes : 1;
     }
 }

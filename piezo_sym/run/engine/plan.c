@@ -21,8 +21,8 @@ typedef struct {
 } MODEL(dispatch);
 
 /*
- * The inputs at the stages of steps. Sines at all stages of one run are computed at once, in the last lane of a
- * vector with more lanes than there are stages that at the end of the step, too: then it returns 1.
+ * The inputs at the stages of steps; returns whether those at their ends are in end_inputs. Sines at all stages
+ * of one run are computed at once, and where lanes are left, in the last of them, that at the end of the step.
  */
 static int MODEL(stage_inputs)(MODEL(batch) *b, const MODEL(dispatch) *t)
 {
@@ -37,7 +37,7 @@ static int MODEL(stage_inputs)(MODEL(batch) *b, const MODEL(dispatch) *t)
         MODEL(sine_at_once)(m, (const double *)(b->waves + k), k);
         for (long i = 0; i < STAGES; ++i)
             m->u[i * m->inputs + k] = *MODEL(place_in)(m->u_lanes, m->inputs, i, k);
-        b->end_inputs[k] = *MODEL(place_in)(m->u_lanes, m->inputs, LANES - 1, k);
+        b->end_inputs[k] = *MODEL(place_in)(m->u_lanes, m->inputs, LANES - 1, k); /* else a stage's */
     }
     if (sines)
         return LANES > STAGES;

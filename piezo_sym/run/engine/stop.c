@@ -21,17 +21,18 @@ enum { SOME = 64, SEEN = 16 };
 
 /*
  * What they have: inner state, stiffness, limit. What they give: for the stages the means of effort,
- * rate of the slip and heat, and the share. On the way: where z is, whether it yields, and since when it
- * follows C; the heat, and where in a piece of the step it comes to its limit.
+ * rate of the slip and heat; the share, and the fraction of the step in which z follows C. On the way:
+ * where z is, whether it yields, and since when it follows C; the heat, and where in a piece of the step
+ * it comes to its limit.
  *
- * The share is for Newton's method: of a change of the rate of C, the same at all times, that of the work
- * which z takes part in. While z follows C for a fraction a of the step, it has moved with C for half of it
- * on the mean: a share of a*a.
+ * The share is for Newton's method: how the mean effort responds to a constant change of dC/dt, relative
+ * to that of a z that follows C all the way. It is a*a if z follows C in one stretch, a fraction a of the
+ * step: a change of C that grows from there on acts for a fraction a, and is a/2 on the mean.
  */
 typedef struct {
     long count;
     double z[SOME], k[SOME], r[SOME];
-    double mean[SHARE][STAGES][SOME], share[SOME];
+    double mean[SHARE][STAGES][SOME], share[SOME], follows[SOME];
     double now[SOME], yields[SOME], since[SOME], heat[SOME], room[SOME], meets[SOME], until[SOME];
     double lead[STAGES][SOME], moved[STAGES][SOME];
 } MODEL(stops);
@@ -148,6 +149,7 @@ static void MODEL(pass)(MODEL(coordinate) *w, const MODEL(piece) *piece, MODEL(s
         s->heat[j] += s->meets[j] > 0.0 ? beyond : 0.0;
         s->now[j] = s->meets[j] > 0.0 ? limit : s->now[j] + piece->more;
         const double since = s->yields[j] > 0.0 ? piece->low : s->since[j];
+        s->follows[j] += until - piece->low;
         s->share[j] += (until - piece->low) * (until + piece->low - 2.0 * since);
         s->since[j] = since;
         s->yields[j] = s->meets[j];
@@ -193,7 +195,7 @@ static void MODEL(stop)(MODEL(coordinate) *w, MODEL(stops) *s)
         const double begin = z > r ? r : z < -r ? -r : z; /* r may have become less */
         s->now[j] = begin;
         s->heat[j] = 0.5 * s->k[j] * (z - begin) * (z + begin);
-        s->share[j] = s->yields[j] = s->since[j] = 0.0;
+        s->share[j] = s->follows[j] = s->yields[j] = s->since[j] = 0.0;
     }
     if (!w->pieces)
         MODEL(find_turns)(w);

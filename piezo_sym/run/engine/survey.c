@@ -14,8 +14,9 @@ enum { ROUGH_ITERATIONS = 8 };
 enum { MOST_SURVEYED = 10000 };
 /*
  * Under sines of one frequency motions settle: after so many periods, once no magnitude has grown by more than GROWTH
- * in the second half of the time, a survey leaps over periods. Entropies of bodies grow as long as there is heat:
- * by their growth in the period before, and by no more than the part MOST_GAINED in a leap.
+ * in the second half of the time, a survey leaps over periods. Entropies of bodies do not count, as they grow as long
+ * as there is heat: a leap adds what they gained in the period before, for each of its periods, but no more than the
+ * part MOST_GAINED of all that they have gained. So where they stop growing, no leap goes much farther.
  */
 #define PERIODS 4.0
 #define GROWTH 0.01
@@ -114,21 +115,38 @@ static int MODEL(is_entropy)(const MODEL(block) *m, long k)
     return found;
 }
 
-/* Let a lane, whose states at the time `since` are in `known`, leap over periods once it has gone through one. */
+/* When the magnitude of a state last grew: since `counted`, which follows, by more than GROWTH. */
+static void MODEL(watch_growth)(mask where, real t, real size, real *counted, real *grew_at)
+{
+    const mask grows = where & (size > (1.0 + GROWTH) * *counted);
+    *counted = chosen(grows, size, *counted);
+    *grew_at = chosen(grows, t, *grew_at);
+}
+
+/* How far a lane may leap [s], after a period from the time `since`, when its states were those in `b->known`. */
+static double MODEL(leap_length)(const MODEL(batch) *b, int lane, double since)
+{
+    const MODEL(lane) *l = b->lane + lane;
+    double most = b->stop - l->t;
+    for (long k = 0; k < b->m.n; ++k) {
+        const double x = LANE(b->m.x, k, lane), gained = fabs(x - LANE(b->known, k, lane));
+        if (MODEL(is_entropy)(&b->m, k) && gained > 0.0)
+            most = MODEL(lesser)(most, MOST_GAINED * fabs(x - l->run->x[k]) / gained * (l->t - since));
+    }
+    return most;
+}
+
+/* Let a lane leap over periods once it has gone through one from the time `since` on; -HUGE_VAL: it has not begun. */
 static void MODEL(leap)(MODEL(batch) *b, int lane, double period, double *since)
 {
     MODEL(block) *m = &b->m;
     MODEL(lane) *l = b->lane + lane;
     const double took = l->t - *since;
-    double most = b->stop - l->t;
+    double leap = 0.0;
     if (took < (1.0 - 1e-9) * period)
         return;
-    for (long k = 0; took < HUGE_VAL && k < m->n; ++k)
-        if (MODEL(is_entropy)(m, k)) {
-            const double gained = fabs(LANE(m->x, k, lane) - LANE(b->known, k, lane));
-            most = MODEL(lesser)(most, MOST_GAINED * fabs(LANE(m->x, k, lane)) / gained * took);
-        }
-    const double leap = took < HUGE_VAL ? floor(most / period) * period : 0.0;
+    if (took < HUGE_VAL)
+        leap = floor(MODEL(leap_length)(b, lane, *since) / period) * period;
     for (long k = 0; k < m->n; ++k) {
         double *const x = &LANE(m->x, k, lane), *const largest = &LANE(m->largest, k, lane);
         if (leap > 0.0 && MODEL(is_entropy)(m, k)) {
@@ -137,8 +155,8 @@ static void MODEL(leap)(MODEL(batch) *b, int lane, double period, double *since)
         }
         LANE(b->known, k, lane) = *x;
     }
-    l->t += leap;
-    l->known = leap > 0.0 ? 0.0 : l->known;
+    l->t = MODEL(lesser)(l->t + leap, b->stop);
+    l->known = leap > 0.0 ? 0.0 : l->known; /* no step goes back before it */
     *since = l->t;
 }
 
@@ -148,15 +166,16 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
     MODEL(block) *m = &b->m;
     mask going = nowhere;
     double period[REAL_WIDTH], since[REAL_WIDTH], begin[REAL_WIDTH]; /* since when a lane goes through a period */
-    real grown = zero; /* when a magnitude grew last */
+    real *const counted = b->some_left, grew_at = zero;
     for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {
         MODEL(load)(b, lane, b->runs + first + lane);
         b->lane[lane].h = longest;
         period[lane] = MODEL(period)(b, lane);
         since[lane] = -HUGE_VAL;
-        begin[lane] = LANE(&grown, 0, lane) = b->lane[lane].t;
+        begin[lane] = LANE(&grew_at, 0, lane) = b->lane[lane].t;
         SET(going, lane, 1);
     }
+    memcpy(counted, m->largest, (size_t)m->n * sizeof(real));
     for (long step = 0; step < MOST_SURVEYED && any(going); ++step) {
         real h = zero;
         for (int lane = 0; lane < REAL_WIDTH; ++lane) {
@@ -174,19 +193,21 @@ static void MODEL(survey_some)(MODEL(batch) *b, long first, double longest)
             SET(back, lane, IN(going, lane) && !IN(good, lane) && b->lane[lane].known > 0.0);
         for (long k = 0; k < m->n; ++k) {
             const real middle = m->reached[k];
-            const mask grows = going & (size_of(middle) > (1.0 + GROWTH) * m->largest[k]);
             if (!MODEL(is_entropy)(m, k))
-                grown = chosen(grows, t, grown);
+                MODEL(watch_growth)(good, t, size_of(middle), counted + k, &grew_at);
             m->largest[k] = chosen(good, largest_of(size_of(middle), m->largest[k]), m->largest[k]);
             m->x[k] = chosen(good, 2.0 * middle - m->x[k], chosen(back, b->kept[k], m->x[k]));
             b->kept[k] = chosen(good, middle, b->kept[k]);
         }
         for (int lane = 0; lane < REAL_WIDTH; ++lane)
             if (IN(going, lane)) {
-                SET(going, lane, MODEL(go_on_surveying)(b, lane, longest, IN(good, lane) != 0));
-                const double took = b->lane[lane].t - begin[lane], growing = LANE(&grown, 0, lane) - begin[lane];
-                if (IN(good, lane) && took > PERIODS * period[lane] && took > 2.0 * growing)
+                int more = MODEL(go_on_surveying)(b, lane, longest, IN(good, lane) != 0);
+                const double took = b->lane[lane].t - begin[lane], grew_for = LANE(&grew_at, 0, lane) - begin[lane];
+                if (more && IN(good, lane) && took > PERIODS * period[lane] && took > 2.0 * grew_for) {
                     MODEL(leap)(b, lane, period[lane], since + lane);
+                    more = b->lane[lane].t < b->stop;
+                }
+                SET(going, lane, more);
             }
     }
     for (int lane = 0; lane < REAL_WIDTH && first + lane < b->count; ++lane) {

@@ -1,6 +1,6 @@
 /* Inputs that are sines, in all lanes at once. Comes after real.h. */
 
-/* The sines of an input in all lanes; `others` is 1 in lanes where it is no sine. */
+/* The sines of an input in all lanes; `others` is 1 in lanes where it is no sine. at_once.c reads the fields in order. */
 typedef struct {
     real amplitude, frequency, rate, phase, offset, others;
 } MODEL(wave);

@@ -1,0 +1,162 @@
+"""What is watched in a run: events, and the condition that ends it.
+
+Input: texts in the language of laws over states, inputs, `y_<port>`, `T_<body>`,
+`<element>.<quantity>` and parameters.  Output: `Watched`.
+"""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import final
+
+from piezo_sym.errors import PiezoError, UsageError, nearest, quote
+from piezo_sym.expressions.incomplete import CONSTANTS, OR, conditions_of
+from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.text import spell
+from piezo_sym.expressions.tree import ZERO, Add, Call, Expr, Mul, Neg, Num, names, rename
+from piezo_sym.run.dataset import element_remedy
+from piezo_sym.run.module import row_names
+from piezo_sym.run.system import DrivenModule
+
+KNOWN = "a state, input, y_<port>, T_<body> or parameter"
+#: A quantity of an element, as `spring.effort`: no name of the language of laws.
+QUANTITY = re.compile(r"\b([A-Za-z_]\w*)\.([A-Za-z_]\w*)")
+#: A number with a unit, which the language does not have either.
+WITH_UNIT = re.compile(r"(?<![\w.])(\d+\.?\d*(?:[eE][-+]?\d+)?) ?([^\W\d_]+(?:/[^\W\d_]+)*)")
+#: Two sides of a condition are equal if they differ by this part: an effort stays at its limit.
+ROUND_OFF = Fraction(1, 2**49)
+
+
+@final
+@dataclass(frozen=True)
+class Watched:
+    """Events (name -> expression), and the condition that ends a run.
+
+    `stop` is positive where `condition`, its text, holds, and zero at its edge, which belongs to it
+    if it is `closed`. `signs` are those of the events at the last sample so far, with which the
+    next window of a run goes on.
+    """
+
+    event: Mapping[str, Expr]
+    stop: Expr | None
+    condition: str = ""
+    closed: bool = False
+    signs: dict[str, float] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        """Return whether there is an event or a condition."""
+        return bool(self.event) or self.stop is not None
+
+
+def read_watched(system: DrivenModule, events: object, stop: object, step: object) -> Watched:
+    """Return a user's events and condition; raise `UsageError` for a run with a fixed step."""
+    given = {} if events is None else events
+    if not isinstance(given, Mapping):
+        expected = 'name -> expression, such as {"hit": "q - 1e-3"}'
+        raise UsageError(f"{quote(given)} is no mapping", "simulate.events", expected)
+    if step is not None and (given or stop is not None):
+        what = "with a fixed step, events are not located"
+        raise UsageError(what, "simulate.step", "rtol", "leave out step, or events and stop")
+    known = quantity_names(system)
+    laws = {}
+    for name, text in given.items():
+        where = f"simulate.events.{name}"
+        if not isinstance(name, str) or not name.isidentifier() or name in {*known, "time"}:
+            why = ": the run has a quantity of that name" if name in {*known, "time"} else ""
+            what = f"{quote(name)} cannot name an event{why}"
+            raise UsageError(what, "simulate.events", "a new name of letters, digits and _")
+        law = _parsed(parse_law, text, where, '"q - 1e-3"', "{}")
+        laws[name] = _check_names(law, known, where)
+    if stop is None:
+        return Watched(laws, None)
+    where = "simulate.stop"
+    margin = _parsed(_to_round_off, stop, where, '"T_body > 350"', "{} > 0")
+    return Watched(laws, _check_names(margin, known, where), str(stop), "=" in str(stop))
+
+
+def _to_round_off(text: str, where: str) -> Expr:
+    """Return the margin of a comparison; that of `>=` and `<=`, for sides equal to round-off."""
+    condition, margin = parse_condition(text, where), _margin(text, where)
+    if condition.op in {">", "<"} or ZERO in {condition.left, condition.right}:
+        return margin
+    sizes = Add((Call("abs", (condition.left,)), Call("abs", (condition.right,))))
+    return Add((margin, Mul(Num(ROUND_OFF), sizes)))
+
+
+def _margin(text: str, where: str) -> Expr:
+    """Return what is positive where a comparison holds."""
+    condition = parse_condition(text, where)
+    sides = condition.left, condition.right
+    more, less = sides if condition.op in {">", ">="} else sides[::-1]
+    return more if less == ZERO else Add((more, Neg(less)))
+
+
+def _margin_of_several(text: str, where: str) -> Expr:
+    """Return what is positive where comparisons hold that are joined by 'and' or 'or'."""
+    for function, parts in (("max", OR.split(text, maxsplit=1)), ("min", conditions_of(text))):
+        if len(parts) > 1:
+            return Call(function, tuple(_margin_of_several(part, where) for part in parts))
+    return _margin(text, where)
+
+
+def _parsed(
+    read: Callable[[str, str], Expr], text: object, where: str, such: str, form: str
+) -> Expr:
+    """Return the parsed text; if only a condition may stand there, the remedy has it in `form`."""
+    if not isinstance(text, str):
+        raise UsageError(f"{quote(text)} is no text", where, f"text such as {such}")
+    plain = QUANTITY.sub(r"_\1_\2", text)  # no spec has such names
+    spelled = {
+        f"_{element}_{word}": f"{element}.{word}" for element, word in QUANTITY.findall(text)
+    }
+    try:
+        return rename(read(plain, where), spelled)
+    except PiezoError as error:
+        said = [error.what, error.expected, error.remedy]
+        with suppress(PiezoError):
+            said[2] = _in_si(text, where) or said[2]
+        with suppress(PiezoError):
+            said[2] = f"write '{form.format(spell(_margin_of_several(plain, where)))}'"
+        for name, own in spelled.items():
+            said = [part.replace(name, own) for part in said]
+        what, expected, remedy = said
+        raise UsageError(what, where, expected, remedy) from error
+
+
+def _in_si(text: str, where: str) -> str:
+    """Return how to write the first number with a unit, as in q > 1um, or ''."""
+    found = WITH_UNIT.search(text)
+    if found is None:
+        return ""
+    from piezo_sym.expressions.units import parse_unit, to_si
+
+    value = to_si(float(found[1]), parse_unit(found[2], where))
+    return f"write numbers in SI: {value:g} for {found[0]}"
+
+
+def _check_names(tree: Expr, words: Sequence[str], where: str) -> Expr:
+    for name in names(tree):
+        if name not in words:
+            dotted = tuple(word for word in words if "." in word)
+            own = (word for word in words if word not in dotted)
+            remedy = element_remedy(name, dotted) if "." in name else ""
+            remedy = remedy or CONSTANTS.get(name) or nearest(name, own)
+            what = f"events and stop know no {quote(name)}"
+            expected = f"{KNOWN}, or a quantity of an element, such as '{dotted[0]}'"
+            raise UsageError(what, where, expected, remedy)
+    return tree
+
+
+def quantity_names(system: DrivenModule) -> list[str]:
+    """Return the names of all that may be watched, in the order of their values."""
+    module, p = system.module, system.parameters
+    return [
+        *row_names(module.STATES, p),
+        *(record.name for record in module.INPUTS),
+        *(f"y_{record.name}" for record in module.OUTPUTS),
+        *(f"T_{record.name}" for record in module.BODIES),
+        *row_names(module.PARAMETERS, p),
+        *row_names(module.ELEMENTS, p),
+    ]
