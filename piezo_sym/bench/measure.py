@@ -25,6 +25,7 @@ from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.inputs import InputValue
+from piezo_sym.run.signals import Constant
 from piezo_sym.spec.model import Model
 
 MANY, CHECKED, DIGITS = 10_000, 8, 30
@@ -79,6 +80,9 @@ def bench(
     problem = problem_of(model, inputs or {}, duration)
     rows: list[Comparison] = []
     left_out: list[str] = []
+    constant = (isinstance(signal, Constant) for signal in problem.system.inputs.signals)
+    if "run" in names and all(constant):
+        left_out.append("run: all inputs are constant, so it may be at rest; give sines (-i)")
     for name in names:
         say(name)
         try:

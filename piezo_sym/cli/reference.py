@@ -24,8 +24,6 @@ series = ["base", "wall"]
 [banks.creep.elements]      # each between the ends of its cell, which go by these names
 slow = { kind = "spring", between = ["base", "wall"], stiffness = "k" }
 loss = { kind = "damper", between = ["base", "wall"], force = "d*v", heats = "body" }"""
-#: Names of hysteresis, which elements have as a field or limit.
-HYSTERESIS = frozenset({"dahl", "bouc_wen", "maxwell_slip", "play", "hysteresis", "slip"})
 OPERATORS = (
     ("+ - * /", "as usual", "R*(1 + al*(T - T_0))"),
     ("**", "a power, by a whole number or a small fraction", "d*v**3"),
@@ -40,10 +38,11 @@ def kinds(
     """List the kinds of elements, or show one: its fields, units, signs, an example."""
     from piezo_sym.errors import UsageError, quote
     from piezo_sym.spec.elements import KINDS
+    from piezo_sym.spec.problems import meant_kind
     from piezo_sym.spec.schema import schema
 
     if kind is not None and kind not in KINDS:
-        raise UsageError(f"{quote(kind)} is no kind", "KIND", remedy=_meant(kind))
+        raise UsageError(f"{quote(kind)} is no kind", "KIND", remedy=meant_kind(kind))
     known = schema()["$defs"]
     if kind is not None:
         _show(kind, known[KINDS[kind].__name__])
@@ -54,18 +53,6 @@ def kinds(
     print_table(title, ("kind", "what it is"), rows)
     typer.echo(f"Several alike, in parallel: count = 3 in an element. Cells of several:\n\n{CELLS}")
     typer.echo(f"\nCells in series, a chain:\n\n{CHAIN}")
-
-
-def _meant(kind: str) -> str:
-    """Return what to write instead of an unknown kind: another element, or a similar name."""
-    if kind.replace("_", "") in {"endstop", "contact"}:
-        return 'write a spring with force = "k_c*max(q - gap, 0)"'
-    if kind.lower().replace("-", "_") in HYSTERESIS:
-        return "hysteresis is a 'stop', or a 'slip' of a spring or capacitor: piezo-sym kinds stop"
-    from piezo_sym.errors import nearest
-    from piezo_sym.spec.elements import KINDS
-
-    return nearest(kind, KINDS)
 
 
 def _show(kind: str, known: dict[str, Any]) -> None:

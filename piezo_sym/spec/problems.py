@@ -31,6 +31,19 @@ NEEDED = {  # examples of keys whose name alone does not say what to write
     "unit": 'unit = "N/m", say; unit = "1" where there is none',
     "value": "value = 1.0, or a list of one per lane",
 }
+#: What to write for what has no kind of its own.
+MEANT = {
+    'write a spring with force = "k_c*max(q - gap, 0)"': ("end_stop", "endstop", "contact"),
+    "hysteresis is a 'stop', or a 'slip' of a spring or capacitor: piezo-sym kinds stop": (
+        *("dahl", "bouc_wen", "maxwell_slip", "play", "hysteresis", "slip", "lugre"),
+    ),
+    "write a 'velocity_source', with the rate of the displacement: a square for a triangle": (
+        *("displacement_source", "position_source", "motion_source", "displacement", "motion"),
+    ),
+    "a bank is an element with count = 3, or a table [banks.<name>]: piezo-sym kinds": (
+        *("bank", "bank_of", "cells", "ladder", "creep"),
+    ),
+}
 #: A number in quotes, with a point or a comma.
 NUMBER = re.compile(r"\s*[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?\s*")
 #: The kind of a body that takes heat.
@@ -118,6 +131,12 @@ def _unknown_key(detail: ErrorDetails, known: Iterable[str]) -> SpecError:
     return SpecError(f"unknown key {quote(key)}", _where(detail), remedy=remedy)
 
 
+def meant_kind(kind: str) -> str:
+    """Return what to write instead of an unknown kind: another element, or a similar name."""
+    word = kind.lower().replace("-", "_")
+    return next((say for say, words in MEANT.items() if word in words), nearest(kind, KINDS))
+
+
 def _where(detail: ErrorDetails) -> str:
     """Return the dotted path of what a detail is about."""
     place = [str(part) for part in detail["loc"]]
@@ -138,7 +157,7 @@ def _problem(detail: ErrorDetails, spec: Mapping[str, Any]) -> SpecError:
             return SpecError("is missing", where, remedy=_missing(place[-1], known, spec))
         case "union_tag_invalid":
             kind = value.get("kind") if isinstance(value, Mapping) else value
-            remedy = nearest(str(kind), KINDS)
+            remedy = meant_kind(str(kind))
             return SpecError(f"unknown kind {quote(kind)}", f"{where}.kind", remedy=remedy)
         case "union_tag_not_found":
             return SpecError("is missing", f"{where}.kind", f"one of {listing(KINDS, 20)}")

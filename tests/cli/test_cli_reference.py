@@ -45,6 +45,18 @@ def test_a_kind_that_is_none_is_refused(call):
     assert answer.err == "piezo-sym: KIND: 'sprin' is no kind; did you mean 'spring'?\n"
 
 
+@pytest.mark.parametrize(
+    ("kind", "meant"),
+    [("displacement_source", "velocity_source"), ("LuGre", "slip"), ("bank", "count = 3")],
+)
+def test_a_kind_that_goes_by_another_name_is_told_in_command_and_spec(kind, meant, call):
+    assert meant in call("kinds", kind).err
+    spec = f"[elements]\na = {{ kind = '{kind}', between = ['tip', 'wall'] }}\n"
+    with pytest.raises(PiezoError) as error:
+        parse(f"[model]\nname = 'm'\n{spec}")
+    assert meant in error.value.remedy
+
+
 def test_every_function_has_an_example_with_it(call):
     out = call("functions").out
     for name, record in FUNCTIONS.items():

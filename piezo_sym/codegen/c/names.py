@@ -33,7 +33,7 @@ _CALLED = "copysign expm1 fabs pow " + " ".join(f"power_{n}" for n in range(2, 9
 #: The names that a step's text and the engine's text behind it define.
 _REALS = (
     "PLAIN MODEL REAL_WIDTH WIDEST WIDTH VECTORS LANE OF SET LANES NUMBER FUNCTION RADICAND "
-    "NOT_PROVED COSTATES BENDS PATHS ALONE REAL real mask pattern few zero "
+    "NOT_PROVED COSTATES BENDS PATHS ALONE REAL real mask pattern few four zero "
     "nowhere wide chosen any none_of size_of with_sign power_of_two small_expm1 reduced is_above "
     "roots_of ROUNDING_AS_SET turned_sin turned_or MOST_TURNED is_at_least pow_of whole_power "
     "least largest_of bits_of real_of pick deadzone saturate sign"

@@ -149,10 +149,12 @@ def _fields(size: Size) -> Fields:
 
 def _store_doc(size: Size) -> str:
     out, driven, letter = size.out, size.driven, size.out.state_letter
+    f, v = out.letter, driven.letter
     slip = (
-        f" With `slip` [{driven.unit}], a law of {out.letter}, its {out.name}, and of "
-        f"{driven.letter}, its {driven.name}, the state's rate is {driven.letter} - slip, and "
-        f"{out.name} times slip `heats` a body with the temperature T."
+        f" With `slip` [{driven.unit}], a law of {f}, its {out.name}, and of {v}, its {driven.name}, "
+        f"the state's rate is {v} - slip, and {out.name} times slip `heats` a body with the "
+        f"temperature T. Bouc-Wen's is (beta*abs({v})*sign({f}) + gam*{v})*abs({f}/{f}_0)**n, with "
+        "beta >= abs(gam)."
     )
     return (
         f"State {letter} [{out.state_unit}], the {out.state}, is the integral of the "
