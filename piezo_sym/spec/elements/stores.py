@@ -151,10 +151,9 @@ def _store_doc(size: Size) -> str:
     out, driven, letter = size.out, size.driven, size.out.state_letter
     f, v = out.letter, driven.letter
     slip = (
-        f" With `slip` [{driven.unit}], a law of {f}, its {out.name}, and of {v}, its {driven.name}, "
-        f"the state's rate is {v} - slip, and {out.name} times slip `heats` a body with the "
-        f"temperature T. Bouc-Wen's is (beta*abs({v})*sign({f}) + gam*{v})*abs({f}/{f}_0)**n, with "
-        "beta >= abs(gam)."
+        f" With `slip` [{driven.unit}], a law of {f}, its {out.name}, and of {v}, its {driven.name}"
+        f" (Bouc-Wen's: (beta*abs({v})*sign({f}) + gam*{v})*abs({f}/{f}_0)**n), the state's rate is"
+        f" {v} - slip, and {out.name} times slip `heats` a body with the temperature T."
     )
     return (
         f"State {letter} [{out.state_unit}], the {out.state}, is the integral of the "
@@ -174,17 +173,16 @@ def _stop_doc(sizes: tuple[Size, ...]) -> str:
     )
     return (
         f"{kinds[0].upper()}{kinds[1:]}, whose magnitude never exceeds `limit`: what would go "
-        "beyond it slips, and co-state times slip `heats` a body. Steps are exact along their "
-        "own path; `rhs` at the limit is the projected rate. The Jenkins element, the stop "
-        "operator, a cell of Maxwell-slip. It is no end stop: that is a spring with "
-        'force = "k_c*max(q - gap, 0)".'
+        "beyond it slips, and co-state times slip `heats` a body. Steps are exact along their own "
+        "path; `rhs` at the limit is the projected rate. The Jenkins element, the stop operator, a "
+        'cell of Maxwell-slip. It is no end stop: a spring with force = "k_c*max(q - gap, 0)" is.'
     )
 
 
 def _costate(size: Size, element: Any, state: str) -> Expr:
     """Return the co-state that a size gives; it may be 0/0 where it has a limit."""
-    value = rename(element.law(size.field), {size.out.state_letter: state})
     moved = _moved(size, element, state)
+    value = rename(element.law(size.field), {size.out.state_letter: state})
     return Mul(value, moved) if size.stiff else Div(moved, value)
 
 
