@@ -80,9 +80,9 @@ def bench(
     problem = problem_of(model, inputs or {}, duration)
     rows: list[Comparison] = []
     left_out: list[str] = []
-    constant = (isinstance(signal, Constant) for signal in problem.system.inputs.signals)
-    if "run" in names and all(constant):
-        left_out.append("run: all inputs are constant, so it may be at rest; give sines (-i)")
+    signals = problem.system.inputs.signals
+    if "run" in names and signals and all(isinstance(signal, Constant) for signal in signals):
+        left_out.append("a drive of the run: its inputs are constant; give sines (-i)")
     for name in names:
         say(name)
         try:

@@ -36,7 +36,7 @@ class Watched:
 
     `stop` is positive where `condition`, its text, holds, and zero at its edge, which belongs to it
     if it is `closed`. `signs` are those of the events at the last sample so far, with which the
-    next window of a run goes on.
+    next window of a run goes on; whether this is one, `goes_on` says.
     """
 
     event: Mapping[str, Expr]
@@ -44,6 +44,7 @@ class Watched:
     condition: str = ""
     closed: bool = False
     signs: dict[str, float] = field(default_factory=dict)
+    goes_on: bool = False
 
     def __bool__(self) -> bool:
         """Return whether there is an event or a condition."""
@@ -73,15 +74,21 @@ def read_watched(system: DrivenModule, events: object, stop: object, step: objec
         return Watched(laws, None)
     where = "simulate.stop"
     margin = _parsed(_to_round_off, stop, where, '"T_body > 350"', "{} > 0")
-    return Watched(laws, _check_names(margin, known, where), str(stop), "=" in str(stop))
+    closed = "=" in parse_condition(_plain(str(stop)), where).op
+    return Watched(laws, _check_names(margin, known, where), str(stop), closed)
+
+
+def _plain(text: str) -> str:
+    """Return a text with names in place of quantities of elements; no spec has such names."""
+    return QUANTITY.sub(r"_\1_\2", text)
 
 
 def _to_round_off(text: str, where: str) -> Expr:
-    """Return the margin of a comparison; that of `>=` and `<=`, for sides equal to round-off."""
-    condition, margin = parse_condition(text, where), _margin(text, where)
-    if condition.op in {">", "<"} or ZERO in {condition.left, condition.right}:
+    """Return the margin of a comparison; of `>=` and `<=`, with the round-off of its terms."""
+    margin = _margin(text, where)
+    if parse_condition(text, where).op in {">", "<"} or not isinstance(margin, Add):
         return margin
-    sizes = Add((Call("abs", (condition.left,)), Call("abs", (condition.right,))))
+    sizes = Add(tuple(Call("abs", (term,)) for term in margin.terms))
     return Add((margin, Mul(Num(ROUND_OFF), sizes)))
 
 
@@ -107,7 +114,7 @@ def _parsed(
     """Return the parsed text; if only a condition may stand there, the remedy has it in `form`."""
     if not isinstance(text, str):
         raise UsageError(f"{quote(text)} is no text", where, f"text such as {such}")
-    plain = QUANTITY.sub(r"_\1_\2", text)  # no spec has such names
+    plain = _plain(text)
     spelled = {
         f"_{element}_{word}": f"{element}.{word}" for element, word in QUANTITY.findall(text)
     }

@@ -278,3 +278,20 @@ def test_one_without_equality_is_not_met_at_its_edge():
 def test_one_that_holds_with_equality_at_the_start_holds_already():
     with pytest.raises(UsageError, match="holds at t = 0 s already"):
         simulate(load_text(PUSHED), inputs={"v_in": 0.5}, duration=1.0, stop="z >= 0")
+
+
+def test_a_comparison_inside_a_choice_does_not_close_the_condition():
+    held = {"v_in": ([0, 1, 2], [0, 0, 1])}
+    run = simulate(load_text(PUSHED), inputs=held, duration=2.0, stop="(z if z >= 0 else 0) > 0")
+    assert float(run.time[-1]) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_condition_that_a_jump_meets_between_two_windows_ends_the_run(tmp_path, monkeypatch):
+    monkeypatch.setattr(streaming, "WINDOW", 1)  # two samples each: windows meet at 0.2, 0.4, ...
+    how = {"duration": 2.0, "times": 21, "events": {"far": "z - 1"}, "stop": "v_in >= 0"}
+    for jump in (0.9, 1.0):
+        speed = ([0, jump, jump, 2], [-1, -1, 1, 1])
+        store = tmp_path / f"{jump}.zarr"
+        run = simulate(load_text(PUSHED), inputs={"v_in": speed}, store=store, **how)
+        assert float(run.time[-1]) == pytest.approx(jump, abs=1e-12)
+        assert "v_in >= 0 at t" in run.attrs["stopped"]
