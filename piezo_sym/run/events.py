@@ -81,7 +81,9 @@ def locate(
     brackets: list[_Bracket] = []
     if watched.stop:
         margin = _at_edge(values_of(system, watched.stop, seen), closed=watched.closed)
-        if margin[0] > 0 and watched.goes_on:  # an input jumps where the window before ends
+        goes_on = "" in watched.signs
+        watched.signs[""] = float(np.sign(margin[-1]))
+        if margin[0] > 0 and goes_on:  # an input jumps where the window before ends
             return Located({name: np.empty(0) for name in watched.event}, float(times[0]))
         if margin[0] > 0:
             what = f"the condition holds at t = {times[0]:g} s already"

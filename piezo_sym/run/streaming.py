@@ -59,9 +59,7 @@ def streamed(
             planned = request.planned(begin, float(window[-1]) - begin, state)
             window = np.minimum(window, planned.system.inputs.end)  # by round-off
             located = read_watched(planned.system, events, stop, request.step)
-            run = planned.dataset(
-                window, replace(located, signs=signs, goes_on=written is not None)
-            )
+            run = planned.dataset(window, replace(located, signs=signs))
             with held_back():
                 written = _append(path, _timed(run, events, hits), written)
             request = replace(request, slack=np.inf)

@@ -35,8 +35,8 @@ class Watched:
     """Events (name -> expression), and the condition that ends a run.
 
     `stop` is positive where `condition`, its text, holds, and zero at its edge, which belongs to it
-    if it is `closed`. `signs` are those of the events at the last sample so far, with which the
-    next window of a run goes on; whether this is one, `goes_on` says.
+    if it is `closed`. `signs` are those of the events, and of `stop` as "", at the last sample so
+    far, with which the next window of a run goes on.
     """
 
     event: Mapping[str, Expr]
@@ -44,7 +44,6 @@ class Watched:
     condition: str = ""
     closed: bool = False
     signs: dict[str, float] = field(default_factory=dict)
-    goes_on: bool = False
 
     def __bool__(self) -> bool:
         """Return whether there is an event or a condition."""
