@@ -86,7 +86,7 @@ SPARSE = [
     ("piezo_stack", {}),
     ("piezo_stack", {"step": 2e-5, "dissipative_start": True}),
     ("piezo_stack", {"parameters": {"hysteron_count": 40}}),
-    ("piezo_stack", {"method": "LSODA"}),
+    pytest.param("piezo_stack", {"method": "LSODA"}, marks=pytest.mark.long),
     ("stack_maxwell", {}),
 ]
 

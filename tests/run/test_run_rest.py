@@ -35,7 +35,7 @@ LAWS = (
 )
 
 
-@pytest.mark.some(4)
+@pytest.mark.some(2)
 @pytest.mark.parametrize("force", [0.1, 1e-3, 1e-6])
 @pytest.mark.parametrize("law", LAWS)
 def test_what_is_a_difference_of_large_terms_at_rest_begins_to_move(law, force):

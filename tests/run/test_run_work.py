@@ -130,6 +130,7 @@ def test_the_scale_of_a_stiff_state_is_that_of_its_motion(rtol):
 PULL_IN = load(Path(__file__).with_name("pull_in.toml"))
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("voltage", [20.0, 60.0])
 def test_a_mode_that_rings_far_below_the_tolerance_does_not_hold_a_run_up(voltage):
     """Its momentum is off by 1e-6 of its scale; rates at the ends of steps tell of that alone."""
