@@ -8,14 +8,14 @@ rate and heat, exact along the step (run/engine/stop.c), and the share of the st
 follows the coordinate.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import final
 
 from piezo_sym.codegen.program import Described, Names, bank_of
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.expressions.calculus import add, derivative, div, mul, neg
-from piezo_sym.expressions.tree import ONE, Expr, Sym, replaced
+from piezo_sym.expressions.tree import ONE, Expr, Sym, names, replaced
 from piezo_sym.spec.elements.ports import Conductor, DissipativePort, Storage
 
 
@@ -28,6 +28,7 @@ class Path:
     bank: str | None  # of the inner state
     drive: Expr  # the rate of the coordinate, in quantities that do not depend on paths
     own: bool  # whether each lane has its own drive
+    seen: bool  # whether a drive depends on the inner state, as by a lever's ratio
     stiffness: Expr  # in parameters
     limit: Expr  # of the inner state, >= 0, at the beginning of a step
     #: effort, slip, heat, share: the names of the means and the share that stages are given.
@@ -52,10 +53,15 @@ def paths_of(q: Quantities, new: Names) -> tuple[Path, ...]:
     stores = {port.state: port for _, port in q.stores if isinstance(port, Storage)}
     paths = []
     processes = q.iphs.circuit.of(DissipativePort, Conductor)
-    for k, (placed, port) in enumerate(processes):
-        if isinstance(port, Conductor) or port.limit is None:
-            continue
+    limited = [
+        (k, placed, port)
+        for k, (placed, port) in enumerate(processes)
+        if isinstance(port, DissipativePort) and port.limit is not None
+    ]
+    seen = _seen(q, (q.drive(k) for k, *_ in limited))
+    for k, placed, port in limited:
         store, bank = stores[port.state], placed.bank
+        assert port.limit is not None
         slope = derivative(store.law, store.state)
         heat = next((d.name for d in q.defined if d.value == q.heats[k]), None)
         drive = q.drive(k)
@@ -65,6 +71,7 @@ def paths_of(q: Quantities, new: Names) -> tuple[Path, ...]:
                 bank=bank,
                 drive=drive,
                 own=bank_of(drive, q.lanes) is not None,
+                seen=store.state in seen,
                 stiffness=slope,
                 limit=div(port.limit, slope),
                 effort=store.costate,
@@ -74,6 +81,18 @@ def paths_of(q: Quantities, new: Names) -> tuple[Path, ...]:
             )
         )
     return tuple(paths)
+
+
+def _seen(q: Quantities, values: Iterable[Expr]) -> set[str]:
+    """Return the names that values depend on, in other quantities, too."""
+    defined, found = {d.name: d.value for d in q.defined}, set[str]()
+    ahead = [name for value in values for name in names(value)]
+    while ahead:
+        name = ahead.pop()
+        if name not in found:
+            found.add(name)
+            ahead += names(defined[name]) if name in defined else ()
+    return found
 
 
 def stage_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:

@@ -119,9 +119,9 @@ def _path_table(known: Proved) -> Iterator[str]:
     banks, name = [*known.sizes], known.iphs.model.name
     states = [slot.label for slot in known.iphs.system.states]
     lines = [
-        f"    {{{banks.index(bank) if bank else -1}, {int(own)}, {states.index(inner)}}},\n"
-        for inner, bank, own in known.paths
+        f"    {{{banks.index(bank) if bank else -1}, {own:d}, {states.index(inner)}, {seen:d}}},\n"
+        for inner, bank, own, seen in known.paths
     ]
     if lines:
-        head = f"#define PATHS {len(lines)}\nstatic const int {name}_path[PATHS][3] = {{\n"
+        head = f"#define PATHS {len(lines)}\nstatic const int {name}_path[PATHS][4] = {{\n"
         yield f"{head}{''.join(lines)}}};\n"

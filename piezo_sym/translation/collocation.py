@@ -110,14 +110,13 @@ def _paths(
     stops: tuple[Stop, ...],
     slots: dict[str, tuple[Slot, ...]],
     values: dict[Key, Value],
-) -> Iterator[tuple[str, str | None, bool]]:
+) -> Iterator[tuple[str, str | None, bool, bool]]:
     """Yield each stop's row of the table; add the rows of its parameters and its drive."""
-    inner = {part for _, store, _ in stops for part in read.names[store.state].parts}
-    for n, (placed, store, slip) in enumerate(stops):
-        slope, drive = derivative(store.law, store.state), read(read.iphs.symbols[slip.rate])
+    drives = [read(read.iphs.symbols[slip.rate]) for *_, slip in stops]
+    seen = {part for drive in drives for part in drive.parts}
+    for n, ((placed, store, slip), drive) in enumerate(zip(stops, drives, strict=True)):
+        slope = derivative(store.law, store.state)
         assert slip.limit is not None
-        if not inner.isdisjoint(drive.parts):
-            raise NotShownError(f"what drives {placed.element} depends on the states of stops")
         parts = read.law(slope), read.law(div(slip.limit, slope))
         values |= {("path_parameters", 2 * n + k): value for k, value in enumerate(parts)}
         values["drives", n] = drive
@@ -125,7 +124,8 @@ def _paths(
         slots["drives"] = (*slots.get("drives", ()), own)
         both = (Slot(placed.element, placed.bank),) * 2
         slots["path_parameters"] = (*slots.get("path_parameters", ()), *both)
-        yield store.state, placed.bank, bool(drive.lanes)
+        inner = read.names[store.state].parts
+        yield store.state, placed.bank, bool(drive.lanes), not seen.isdisjoint(inner)
 
 
 def _means(read: SystemReader) -> Iterator[tuple[str, tuple[Slot, Value]]]:

@@ -59,8 +59,9 @@ class Proved:
     #: The margin of each condition of the domain, and whether the condition is strict.
     margins: tuple[tuple[Value, bool], ...]
     means: Mapping[str, Value]  # in a stage: each co-state, by the name of its mean
-    #: In a stage: each stop's inner state, its bank, and whether each lane has its own drive.
-    paths: tuple[tuple[str, str | None, bool], ...] = ()
+    #: In a stage: each stop's inner state, its bank, whether each lane has its own drive, and
+    #: whether a drive depends on the state.
+    paths: tuple[tuple[str, str | None, bool, bool], ...] = ()
 
     @cached_property
     def numbers(self) -> Mapping[float, Fraction]:

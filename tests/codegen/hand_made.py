@@ -200,7 +200,7 @@ class HandMade:
             own |= any(f"E_{word}" in names(drive) for word, (_, b) in self.states.items() if b)
             taken = read(stiffness), compared(read(limit))
             given = (f"{name}_{what}" for what in ("effort", "slip", "heat", "share"))
-            found.append(Stop(inner, bank, drive, own, *taken, *given))
+            found.append(Stop(inner, bank, drive, own, inner in names(drive), *taken, *given))
         return tuple(found)
 
     def _standing(self):

@@ -331,3 +331,61 @@ def test_what_cannot_be_is_refused():
         derive(parse(base + ohm.replace('"V"', '"F"')))
     rows = verify(derive(parse(base + MASS.replace('limit = "F_c"', 'limit = "V_c"')))).rows
     assert {row.id: row.verdict for row in rows}["units"] is Verdict.REFUTED
+
+
+LEVER = """
+[model]
+name = "led_by_its_own_state"
+[parameters]
+m = { value = 1.0, unit = "kg" }
+k = { value = 30.0, unit = "N/m" }
+F_c = { value = 1.0, unit = "N" }
+L = { value = 0.1, unit = "m" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 1.0, unit = "J/K" }
+[inputs]
+F = { unit = "N" }
+[domain]
+assume = ["L > 0"]
+[elements]
+mass = { kind = "mass", at = "a", mass = "m", state = "p" }
+body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+load = { kind = "force_source", at = "a", input = "F" }
+[elements.arm]
+kind = "lever"
+first = ["a", "wall"]
+second = ["b", "wall"]
+ratio = "1 + z**2/L**2"
+[elements.block]
+kind = "stop"
+between = ["b", "wall"]
+stiffness = "k"
+limit = "F_c"
+heats = "body"
+state = "z"
+"""
+MORE_STOPS = """
+[elements.more]
+kind = "stop"
+between = ["b", "wall"]
+stiffness = "k"
+limit = "F_c"
+heats = "body"
+count = 4
+state = "y"
+"""
+
+
+@pytest.mark.parametrize("more", ["", MORE_STOPS], ids=["alone", "beside a bank"])
+def test_what_drives_stops_may_depend_on_the_state_of_one(more):
+    """Their drive is the mass's velocity times a ratio that the stop's own state changes."""
+    model = parse(LEVER + more)
+    assert {row.verdict for row in process.examined(model).rows} == {Verdict.PROVED}
+    how = {"inputs": {"F": sine(3.0, 1.0)}, "duration": 3.0, "times": 301}
+    other = simulate(model, method="LSODA", rtol=1e-9, **how)
+    for rtol in (1e-4, 1e-6):
+        run = simulate(model, rtol=rtol, **how)
+        for name in ("p", "z", "S"):
+            size = np.abs(other[name].values).max()
+            assert np.abs(run[name].values - other[name].values).max() <= 10 * rtol * size
+        assert np.abs(run.energy_residual).max() <= 1e-14 * run.energy.max()

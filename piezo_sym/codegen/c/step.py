@@ -259,12 +259,14 @@ class _Printer:
         paths, states = self.step.paths, [state.name for state in self.program.states]
         if paths:
             banks = [None, *self.program.counts]
-            yield from comment(
-                "Path functionals: bank or -1, whether each lane has a drive, inner state"
+            doc = (
+                "Path functionals: bank or -1, drives of lanes, inner state, if drives depend on it"
             )
-            yield f"#define PATHS {len(paths)}\nstatic const int {self.name}_path[PATHS][3] = {{"
+            yield from comment(doc)
+            yield f"#define PATHS {len(paths)}\nstatic const int {self.name}_path[PATHS][4] = {{"
             for p in paths:
-                yield f"    {{{banks.index(p.bank) - 1}, {int(p.own)}, {states.index(p.inner)}}},"
+                row = banks.index(p.bank) - 1, int(p.own), states.index(p.inner), int(p.seen)
+                yield f"    {{{', '.join(map(str, row))}}},"
             yield "};"
 
     def _bodies(self) -> Iterator[str]:

@@ -45,9 +45,9 @@ typedef struct {
 #if defined(PATHS)
 /*
  * Columns of a path functional's row: its bank (-1: none), whether each lane of the bank has a drive
- * of its own, its inner state. Then what it gives to a stage, and what its parameters are.
+ * of its own, its inner state, and whether a drive depends on it. Then what it gives to a stage, and what its parameters are.
  */
-enum { BANK, OWN, INNER };
+enum { BANK, OWN, INNER, IN_DRIVE };
 enum { EFFORT, SLIP, HEAT, SHARE, GIVEN };
 enum { STIFFNESS, LIMIT, PARAMETERS };
 /* Where in a step, as a fraction, a path functional first begins or ceases to yield; how often some do. */
@@ -115,12 +115,17 @@ static int MODEL(is_inner)(long record, long bank)
     return found;
 }
 
-/* Whether the lanes of a bank have no states but inner ones. */
+/*
+ * Whether the lanes of a bank have no states but inner ones, which Newton's method then leaves out. It leaves out
+ * none if a drive depends on an inner state: rates that are set would lag behind those by which they are.
+ */
 static int MODEL(is_left_out)(long bank)
 {
     int found = 1;
     for (long k = MODEL(lane_states_at)[bank]; k < MODEL(lane_states_at)[bank + 1]; ++k)
         found &= MODEL(is_inner)(MODEL(lane_states)[k], bank);
+    for (long n = 0; n < PATHS; ++n)
+        found &= !MODEL(path)[n][IN_DRIVE];
     return found;
 }
 
