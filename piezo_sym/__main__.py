@@ -1,5 +1,53 @@
-"""``python -m piezo_sym``: the command ``piezo-sym``."""
+"""The process of the command ``piezo-sym``, from its start to its exit.
 
-from piezo_sym.cli import main
+Input: the words of a command line.  Output: what `piezo_sym.cli` makes of them.
+"""
 
-main()
+import gc
+import signal
+import sys
+from contextlib import suppress
+
+from piezo_sym.errors import PiezoError
+
+#: Of garbage collection: a command makes many objects, by imports above all, but little garbage.
+THRESHOLDS = 100_000, 50, 100
+
+
+def main() -> None:
+    """Run the command line and exit with its code; SIGTERM stops it as Ctrl-C does."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    gc.set_threshold(*THRESHOLDS)
+    start_examiner(sys.argv[1:])
+    from piezo_sym.cli import run
+
+    code = run(sys.argv[1:])
+    gc.freeze()  # the system takes back the memory of all objects at once
+    sys.exit(code)
+
+
+def start_examiner(words: list[str]) -> None:
+    """Start the process that proves, if a command will need it: it imports while this one does."""
+    if "--help" in words:
+        return
+    file = next((word for word in words if word.endswith(".toml")), "")
+    if words[:1] in (["verify"], ["generate"]) or (words[:1] == ["simulate"] and _is_new(file)):
+        from piezo_sym.verification.process import started
+
+        started()
+
+
+def _is_new(file: str) -> bool:
+    """Return whether a spec file was never loaded, nor one that differs from it in values alone."""
+    from piezo_sym.module_cache import was_loaded
+    from piezo_sym.spec.source import data, find, read
+    from piezo_sym.spec.values import without_values
+
+    with suppress(PiezoError):  # the command says so
+        content = data(read(find(file)))
+        return not (was_loaded(content) or was_loaded(without_values(content)))
+    return False
+
+
+if __name__ == "__main__":
+    main()

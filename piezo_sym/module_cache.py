@@ -27,6 +27,7 @@ from piezo_sym.files import (
     write_text,
     write_together,
 )
+from piezo_sym.spec.values import without_values
 from piezo_sym.version import own_sources, unchanged
 
 #: Endings of the folders of records: texts of proved modules; texts of modules that are not proved;
@@ -66,6 +67,25 @@ def _folder(key: str, kind: str) -> Path:
 def _digest(folder: Path, text: str) -> str:
     """Return the digest of a record; it depends on the folder, so that no record can be moved."""
     return hashlib.sha256(f"{folder.name}\n{text}".encode()).hexdigest()
+
+
+def remember(content: dict[str, Any]) -> None:
+    """Remember that a spec with exactly this data was loaded, and one that differs in values only.
+
+    The spec's own hash is not enough: it leaves out entries without effect, such as `count = 0`,
+    that loading may refuse.
+    """
+    for one in (content, without_values(content)):
+        keep(_digest_of_data(one), LOADED, True, own_sources())
+
+
+def was_loaded(content: dict[str, Any]) -> bool:
+    """Return whether a spec with exactly this data is remembered."""
+    return kept(_digest_of_data(content), LOADED) is True
+
+
+def _digest_of_data(content: dict[str, Any]) -> str:
+    return hashlib.sha256(repr(content).encode()).hexdigest()
 
 
 def cached_module(name: str, sha256: str, kind: str = MODULE) -> ModuleType | None:

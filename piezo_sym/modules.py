@@ -8,7 +8,6 @@ Input: a shipped name, a path, or a `Model`.  Output: its generated module, load
 from __future__ import annotations
 
 import filecmp
-import hashlib
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, suppress
@@ -23,14 +22,14 @@ import numpy as np
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.files import path_text, read_text, temporary_folder
 from piezo_sym.module_cache import (
-    LOADED,
     SHAPE,
     UNPROVED_MODULE,
     cache_module,
     cached_module,
-    keep,
     kept,
     load_module,
+    remember,
+    was_loaded,
     write_module,
 )
 from piezo_sym.run.module import UNPROVED, held, verdict_of
@@ -94,7 +93,7 @@ def _of_file(path: Path, text: str, stages: int | None) -> ModuleType:
     model = of_file(path, text)
     module = _of_model(model, stages)
     if not model.components and not model.banks:
-        _remember(content)
+        remember(content)
     return module
 
 
@@ -126,31 +125,13 @@ _hash = lru_cache(maxsize=64)(lambda text: spec_hash(_data(text)))
 
 
 def _known(path: Path, content: dict[str, Any], text: str) -> ModuleType | None:
-    """Return the module of a spec, if loading would not refuse what it says: see `_remember`."""
+    """Return the module of a spec, if loading would not refuse what it says: see `remember`."""
     tables = all(isinstance(table, dict) for table in content.values())
-    if (tables and path.parent == MODELS) or _was_loaded(content):  # a shipped spec is valid
+    if (tables and path.parent == MODELS) or was_loaded(content):  # a shipped spec is valid
         name = str(content.get("model", {}).get("name"))
         if module := _available(name, _hash(text)):
             return module
-    return _refilled(content) if _was_loaded(without_values(content)) else None
-
-
-def _remember(content: dict[str, Any]) -> None:
-    """Remember that a spec with exactly this data was loaded, and one that differs in values only.
-
-    The spec's own hash is not enough: it leaves out entries without effect, such as `count = 0`,
-    that loading may refuse.
-    """
-    for one in (content, without_values(content)):
-        keep(_digest(one), LOADED, True, own_sources())
-
-
-def _was_loaded(content: dict[str, Any]) -> bool:
-    return kept(_digest(content), LOADED) is True
-
-
-def _digest(content: dict[str, Any]) -> str:
-    return hashlib.sha256(repr(content).encode()).hexdigest()
+    return _refilled(content) if was_loaded(without_values(content)) else None
 
 
 def _command(spec: str | Path | Model) -> str:
@@ -203,7 +184,7 @@ def _refilled(content: dict[str, Any]) -> ModuleType | None:
     sha256 = spec_hash(content)
     if not _starts_inside(write_module(temporary_folder() / sha256, name, texts)):
         return None
-    _remember(content)
+    remember(content)
     return cache_module(name, sha256, texts, own_sources())
 
 

@@ -5,7 +5,6 @@ property is not proved or a generated file is out of date, 2 the spec or the com
 """
 
 import os
-import signal
 import sys
 from typing import Annotated, Any
 
@@ -61,12 +60,6 @@ def _options(
     ] = False,
 ) -> None:
     """Do nothing: the callback of the option runs before any command is looked up."""
-
-
-def main() -> None:
-    """Run the command line and exit with its code; SIGTERM stops it as Ctrl-C does."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    sys.exit(run(sys.argv[1:]))
 
 
 def run(words: list[str]) -> int:

@@ -39,9 +39,6 @@ def generate(
     for file and byte for byte, with the first differing lines and what to do; with --all (or
     without SPEC) also if anything else is in OUT.
     """
-    from piezo_sym.verification.process import started
-
-    started()
     from piezo_sym.build import refuse_case, shipped_models
     from piezo_sym.spec.load import load
 

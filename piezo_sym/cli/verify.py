@@ -80,9 +80,6 @@ def _reports(
 
     The text of a spec is the user's own, as far as a second program reads it.
     """
-    from piezo_sym.verification.process import started
-
-    started()
     from piezo_sym.build import PROOFS, report_and_files
     from piezo_sym.expressions.tree import names
     from piezo_sym.spec.load import of_file

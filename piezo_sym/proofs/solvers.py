@@ -131,5 +131,10 @@ def opinions() -> SolverLike:
 
 @cache
 def solver(name: str, patience: float = PATIENCE) -> Solver:
-    """Return the solver ``z3`` or ``cvc5``, one process of each for the whole run."""
-    return Solver(name, Worker("-E", str(Path(__file__).with_name("worker.py")), name), patience)
+    """Return the solver ``z3`` or ``cvc5``, whatever the patience in the one process of it."""
+    return Solver(name, _worker(name), patience)
+
+
+@cache
+def _worker(name: str) -> Worker:
+    return Worker("-E", str(Path(__file__).with_name("worker.py")), name)
