@@ -205,7 +205,8 @@ def to_dataset(
         fields.append((name, dims, array.shape, tuple(about.items())))
     make = blank if times.size <= MOST_KEPT else blank.__wrapped__
     made = make(tuple(fields), times.tobytes(), lane_counts(system)).copy(data=arrays)
-    return made.assign_attrs(model_attrs(system) | dict(attrs))
+    made.attrs |= model_attrs(system) | dict(attrs)
+    return made
 
 
 @lru_cache(maxsize=8)

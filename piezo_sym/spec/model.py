@@ -55,6 +55,7 @@ class Model(Tables):
     """
 
     _flat: Model | None = PrivateAttr(None)
+    _sha256: str = PrivateAttr("")
 
     def __init__(self, /, **tables: Any) -> None:
         """Check the data; a fault becomes one `SpecError`."""
@@ -106,7 +107,8 @@ class Model(Tables):
     @property
     def sha256(self) -> str:
         """SHA-256 of the flat spec in canonical form; generated modules carry it."""
-        return spec_hash(self.flatten().model_dump())
+        self._sha256 = self._sha256 or spec_hash(self.flatten().model_dump())
+        return self._sha256
 
     @property
     def key(self) -> str:

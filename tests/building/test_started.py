@@ -5,6 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+from piezo_sym.__main__ import start_examiner
+from piezo_sym.modules import module_of
+
 ROOT = Path(__file__).parents[2]
 STRETCHED = """
 [model]
@@ -50,3 +54,52 @@ def test_where_modules_are_looked_for_may_hold_paths(tmp_path):
     )
     done = started(["-c", code], tmp_path)
     assert done.returncode == 0, done.stderr
+
+
+@pytest.fixture
+def starts(monkeypatch):
+    """The starts of the process that proves, which are counted and not made."""
+    found = []
+    monkeypatch.setattr("piezo_sym.verification.process.started", lambda: found.append(True))
+    return found
+
+
+def starts_it(words, starts):
+    before = len(starts)
+    start_examiner(words)
+    return len(starts) > before
+
+
+def test_a_run_starts_the_process_that_proves_if_its_spec_is_not_known(tmp_path, starts):
+    path = tmp_path / "stretched.toml"
+    words = ["simulate", "-i", "F=1", str(path), "--duration", "1 s"]
+    path.write_text(STRETCHED)
+    module_of(path)
+    assert not starts_it(words, starts)
+    path.write_text(STRETCHED.replace("value = 2.0", "value = 2.5"))
+    assert not starts_it(words, starts)
+    path.write_text(STRETCHED.replace("k*cosh", "k/2*cosh"))
+    assert starts_it(words, starts)
+
+
+@pytest.mark.parametrize("text", [None, "[model", "model = 1", "[model]\nname = 2"])
+def test_what_is_no_spec_is_left_to_the_command(text, tmp_path, starts):
+    path = tmp_path / "no.toml"
+    if text:
+        path.write_text(text)
+    start_examiner(["simulate", str(path)])
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        (["verify", "oscillator"], True),
+        (["generate", "--check"], True),
+        (["generate", "--help"], False),
+        (["simulate", "oscillator"], False),
+        (["show", "oscillator"], False),
+        ([], False),
+    ],
+)
+def test_commands_that_prove_start_the_process_at_once(words, wanted, starts):
+    assert starts_it(words, starts) == wanted
