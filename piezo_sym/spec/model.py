@@ -12,6 +12,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, cast, final
 
@@ -55,7 +56,6 @@ class Model(Tables):
     """
 
     _flat: Model | None = PrivateAttr(None)
-    _sha256: str = PrivateAttr("")
 
     def __init__(self, /, **tables: Any) -> None:
         """Check the data; a fault becomes one `SpecError`."""
@@ -107,8 +107,11 @@ class Model(Tables):
     @property
     def sha256(self) -> str:
         """SHA-256 of the flat spec in canonical form; generated modules carry it."""
-        self._sha256 = self._sha256 or spec_hash(self.flatten().model_dump())
-        return self._sha256
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> str:
+        return spec_hash(self.flatten().model_dump())
 
     @property
     def key(self) -> str:
