@@ -83,7 +83,7 @@ def test_a_run_starts_the_process_that_proves_if_its_spec_is_not_known(tmp_path,
 
 
 @pytest.mark.parametrize("text", [None, "[model", "model = 1", "[model]\nname = 2"])
-def test_what_is_no_spec_is_left_to_the_command(text, tmp_path, starts):
+def test_what_is_no_spec_is_left_to_the_command(text, tmp_path):
     path = tmp_path / "no.toml"
     if text:
         path.write_text(text)
