@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from piezo_sym.__main__ import start_examiner
 from piezo_sym.modules import module_of
 
