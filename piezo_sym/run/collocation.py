@@ -7,6 +7,7 @@ a tolerance or a `FixedStep`.  Output: `Runs`, whose states are those of their l
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from math import ceil
 from threading import Thread
 from typing import Any, TypeAlias, final
@@ -28,10 +29,15 @@ from piezo_sym.run.system import QUIET, DrivenModule
 METHOD = "discrete_gradient"
 #: Called with the time [s] that runs have reached, every few milliseconds; an exception ends them.
 Watch: TypeAlias = Callable[[float], object]
+#: Called with the times reached of those of a run's samples, and the run there, every millisecond
+#: or so: whether the run may end.
+Ended: TypeAlias = Callable[[FloatArray, Trajectory], bool]
 #: The first step, the longest step, and the longest step of the coarse run, over the duration.
 FIRST, LONGEST, SURVEYED = 1e-5, 0.25, 1 / 64
 #: States times steps between two calls of `watch`: some milliseconds.
 CHUNK = 50_000
+#: Those between two questions whether a run has ended, in parts of a chunk.
+ASKED = 8
 #: In runs of more states, vectors hold lanes of banks instead of runs.
 MOST_STATES = 32
 #: (least rtol, cheapest number of stages, tolerance of a step's estimated error over rtol); the
@@ -87,6 +93,10 @@ class Runs:
         end = replace(self, times=t, states=x[None], sums=ledger[None, :, 0])
         return self.so_far(k).until(self.times, float(t[0]), end.so_far(0))
 
+    def samples(self, k: int) -> tuple[FloatArray, Trajectory]:
+        """Return the times and run k at the samples that it has reached."""
+        return self.so_far(k).reached(self.times)
+
     def so_far(self, k: int) -> Trajectory:
         """Return run k; samples that it has not reached are nan."""
         sums = self.sums[k].T
@@ -111,6 +121,7 @@ def collocate(
     accuracy: float | FixedStep,
     watch: Watch | None = None,
     *,
+    ended: Ended | None = None,
     stages: int | None = None,
     starts: bool = False,
     side_by_side: bool = True,
@@ -123,6 +134,7 @@ def collocate(
     Parameters
     ----------
     systems : with equal inputs and sizes.
+    ended : says of the first run so far whether all runs may end there.
     stages : of a step with a tolerance; the cheapest number when left out.
     starts : whether the first fixed step after a jump of the inputs is dissipative.
     side_by_side : whether runs of few states share vectors.
@@ -137,12 +149,22 @@ def collocate(
             advance_from_jumps(batch, how, first.inputs, times, watch)
         elif not how.fixed:
             set_scales(batch, systems, x, how.tolerance)
-        advance(batch, watch)
+        advance(batch, watch, ended and partial(_goes_on, batch, systems, x, times, ended))
     except KeyboardInterrupt as stopped:
         batch.call("halt")
         vars(stopped)["reached"] = results_of(batch, systems, x, times).reached(0)
         raise
     return results_of(batch, systems, x, times)
+
+
+def _goes_on(
+    batch: Batch,
+    systems: Sequence[DrivenModule],
+    x: FloatArray,
+    times: FloatArray,
+    ended: Ended,
+) -> bool:
+    return not ended(*results_of(batch, systems, x, times).samples(0))
 
 
 def set_scales(
@@ -173,13 +195,16 @@ def advance_from_jumps(
     batch.go_on(how, inputs.end)
 
 
-def advance(batch: Batch, watch: Watch | None = None) -> None:
-    """Advance runs to where they stop, and tell `watch` the mean time they have reached."""
-    more = True
-    while more:
-        more = batch.go(max(1, CHUNK // batch.x.shape[1]))
+def advance(
+    batch: Batch, watch: Watch | None = None, goes_on: Callable[[], bool] | None = None
+) -> None:
+    """Advance runs while they go on, and tell `watch` the mean time they have reached."""
+    most = max(1, CHUNK // batch.x.shape[1] // (ASKED if goes_on else 1))
+    while batch.go(most) and (goes_on is None or goes_on()):
         if watch:
             watch(float(np.mean(batch.records["t"])))
+    if watch:
+        watch(float(np.mean(batch.records["t"])))
 
 
 def results_of(

@@ -82,18 +82,22 @@ class Trajectory:
             numerical=None if self.numerical is None else self.numerical[:, places],
         )
 
-    def until(self, times: FloatArray, t: float, last: Trajectory) -> tuple[FloatArray, Trajectory]:
-        """Return the times and the run at the samples reached, and at `last`, if t [s] is later."""
+    def reached(self, times: FloatArray) -> tuple[FloatArray, Trajectory]:
+        """Return the times and the run at the samples reached."""
         missing = np.isnan(self.states).any(axis=0)
         count = int(np.argmax(missing)) if missing.any() else missing.size
-        run = self.at(np.arange(count))
-        if not self.steps or t <= max(times[:count], default=-inf):
-            return times[:count], run
+        return times[:count], self.at(np.arange(count))
+
+    def until(self, times: FloatArray, t: float, last: Trajectory) -> tuple[FloatArray, Trajectory]:
+        """Return the times and the run at the samples reached, and at `last`, if t [s] is later."""
+        times, run = self.reached(times)
+        if not self.steps or t <= max(times, default=-inf):
+            return times, run
         over_time = [name for name, values in vars(run).items() if np.ndim(values) == 2]
         joined: dict[str, Any] = {
             name: np.hstack([getattr(run, name), getattr(last, name)]) for name in over_time
         }
-        return np.append(times[:count], t), replace(run, **joined)
+        return np.append(times, t), replace(run, **joined)
 
 
 @final

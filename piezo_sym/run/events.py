@@ -4,12 +4,14 @@ Input: what is watched, and a function that samples the run at any times.  Outpu
 each event, and when the run stops.
 
 A sample is a step of its own from the last accepted state, so more samples do not change the run:
-it is sampled at the user's times and four times per step, then again where signs change.
+it is sampled at the user's times, until the first of them at which it stops; then four times per
+step, and again where signs change.  No run goes on for long behind its last sample.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any, Self, TypeAlias, final
 
 import numpy as np
@@ -18,13 +20,14 @@ from piezo_sym.errors import UsageError, quote
 from piezo_sym.expressions.exact_eval import evaluate
 from piezo_sym.expressions.tree import Expr, names
 from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.collocation import Ended
 from piezo_sym.run.dataset import Evaluation, Trajectory, attributes
 from piezo_sym.run.module import rows
 from piezo_sym.run.system import DrivenModule
 from piezo_sym.run.watched import Watched, quantity_names
 
 #: Returns the given times that the run reaches, and the run there.
-Sampler: TypeAlias = Callable[[FloatArray], tuple[FloatArray, Trajectory]]
+Sampler: TypeAlias = Callable[[FloatArray, Ended | None], tuple[FloatArray, Trajectory]]
 #: Samples to find changes of sign: per step, and the least and greatest number of them.
 PER_STEP, LEAST, MOST = 4, 1000, 20_000
 #: How the description of the times of an event begins.
@@ -71,16 +74,55 @@ def values_of(system: DrivenModule, tree: Expr, trajectory: Trajectory) -> Float
     return values
 
 
-def locate(
-    system: DrivenModule, watched: Watched, samples: FloatArray, steps: int, run: Sampler
-) -> Located:
-    """Return the times of events and of the end of a run that took this many steps."""
-    number = min(max(PER_STEP * steps, LEAST), MOST)
-    even = np.linspace(system.inputs.start, system.inputs.end, number)
-    times, seen = run(np.union1d(samples, even))
+def at_last(times: FloatArray) -> Ended:
+    """Return what ends a run behind the last of some samples."""
+    return lambda reached, _: reached.size > 0 and bool(reached[-1] >= times[-1])
+
+
+@final
+class _Scout:
+    """Looks among the samples of a run, as it goes on, for the first at which it stops.
+
+    Attributes
+    ----------
+    looked : how many samples it has looked at.
+    end : the time of the first at which the run stops [s]; infinity so far.
+    """
+
+    def __init__(self, system: DrivenModule, watched: Watched) -> None:
+        self.system, self.watched = system, watched
+        self.looked, self.end = 0, inf
+
+    def ended(self, times: FloatArray, seen: Trajectory) -> bool:
+        """Return whether the run stops at one of the samples reached."""
+        new = np.arange(self.looked, times.size)
+        holds = np.flatnonzero(stop_margin(self.system, self.watched, seen.at(new)) > 0)
+        if holds.size:
+            self.end = min(self.end, float(times[new[holds[0]]]))
+        self.looked = times.size
+        return self.end < inf
+
+
+def stop_margin(system: DrivenModule, watched: Watched, seen: Trajectory) -> FloatArray:
+    """Return at the samples of a run what is positive where it stops."""
+    assert watched.stop is not None
+    return _at_edge(values_of(system, watched.stop, seen), closed=watched.closed)
+
+
+def locate(system: DrivenModule, watched: Watched, samples: FloatArray, run: Sampler) -> Located:
+    """Return the times of the events of a run, and of its end."""
+    start, end, times, scout = system.inputs.start, system.inputs.end, samples, None
+    if watched.stop:
+        scout = _Scout(system, watched)
+        times = np.union1d(samples, np.linspace(start, end, LEAST))
+    times, seen = run(times, scout and scout.ended)
+    if scout and scout.ended(times, seen):
+        end = scout.end
+    even = np.linspace(start, end, min(max(PER_STEP * seen.steps, LEAST), MOST))
+    times, seen = run(np.union1d(samples[samples <= end], even), at_last(even))
     brackets: list[_Bracket] = []
     if watched.stop:
-        margin = _at_edge(values_of(system, watched.stop, seen), closed=watched.closed)
+        margin = stop_margin(system, watched, seen)
         goes_on = "" in watched.signs
         watched.signs[""] = float(np.sign(margin[-1]))
         if margin[0] > 0 and goes_on:  # an input jumps where the window before ends
@@ -100,10 +142,10 @@ def locate(
         ends = np.stack([np.maximum(changed - 1, 0), changed], axis=1)
         brackets += [_Bracket(name, tree, times[pair], values[pair]) for pair in ends]
     located = [(b.name, float(b.times[1])) for b in _narrow(system, brackets, run)]
-    end = next((t for name, t in located if not name), None)
-    kept = [(name, t) for name, t in located if end is None or t <= end]
+    stop = next((t for name, t in located if not name), None)
+    kept = [(name, t) for name, t in located if stop is None or t <= stop]
     times_of = {name: np.array([t for n, t in kept if n == name]) for name in watched.event}
-    return Located(times_of, end)
+    return Located(times_of, stop)
 
 
 def _at_edge(values: FloatArray, *, closed: bool) -> FloatArray:
@@ -159,7 +201,8 @@ def _narrow(system: DrivenModule, brackets: list[_Bracket], run: Sampler) -> lis
         inner = [bracket.inner() for bracket in brackets]
         if not any(times.size for times in inner):
             break
-        times, seen = run(np.unique(np.concatenate([*inner, *(b.times for b in brackets)])))
+        at = np.unique(np.concatenate([*inner, *(b.times for b in brackets)]))
+        times, seen = run(at, at_last(at))
         values = {tree: values_of(system, tree, seen) for tree in {b.tree for b in brackets}}
         brackets = [b.narrow(times, values[b.tree]) for b in brackets]
     return brackets

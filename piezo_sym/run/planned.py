@@ -15,11 +15,11 @@ import numpy as np
 
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.collocation import METHOD, FixedStep, Watch, collocate, stages_for
+from piezo_sym.run.collocation import METHOD, Ended, FixedStep, Watch, collocate, stages_for
 from piezo_sym.run.dataset import Trajectory, element_variables, to_dataset
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import Engine
-from piezo_sym.run.events import event_variables, locate
+from piezo_sym.run.events import at_last, event_variables, locate, stop_margin
 from piezo_sym.run.guard import SLACK, check_inputs, check_start
 from piezo_sym.run.inputs import InputValue, read_inputs
 from piezo_sym.run.method import ChosenMethod
@@ -74,12 +74,18 @@ class PlannedRun:
     system: DrivenModule
     x: FloatArray
 
-    def run(self, samples: FloatArray) -> tuple[Trajectory, dict[str, object]]:
-        """Return the run at its samples (nt,), and its work; an error has the samples reached."""
+    def run(
+        self, samples: FloatArray, ended: Ended | None = None
+    ) -> tuple[Trajectory, dict[str, object]]:
+        """Return the run at its samples (nt,), and its work; an error has the samples reached.
+
+        Behind its end there are no numbers.
+        """
         request, system, x = self.request, self.system, self.x
         if request.chosen.engine:
-            return compiled_run(request, request.chosen.engine, system, x, samples)
-        return by_scipy(system, x, samples, request.chosen.method, request.rtol, request.watch)
+            return compiled_run(request, request.chosen.engine, system, x, samples, ended)
+        options = request.chosen.method, request.rtol, request.watch, ended
+        return by_scipy(system, x, samples, *options)
 
     def dataset(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
         """Return the run as a Dataset with its events; `partial` of an error is that so far."""
@@ -106,27 +112,34 @@ class PlannedRun:
     def _dataset_with_events(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
         failed: list[RunError] = []
         work: dict[str, object] = {}
+        first: list[tuple[FloatArray, Trajectory]] = []
 
-        def run(times: FloatArray) -> tuple[FloatArray, Trajectory]:
+        def run(times: FloatArray, ended: Ended | None) -> tuple[FloatArray, Trajectory]:
             try:
-                trajectory, attrs = self.run(times)
+                trajectory, attrs = self.run(times, ended)
             except RunError as error:
                 if error.reached is None or not error.reached[0].size:
                     raise
                 failed.append(error)
                 times, trajectory = error.reached
+            except KeyboardInterrupt as stopped:
+                reached = first or [vars(stopped).get("reached", (times[:0], None))]
+                vars(stopped)["reached"] = self._sampled(*reached[0], samples, watched)
+                raise
             else:
                 work.update(attrs)
-            return times, trajectory
+            first.append(trajectory.reached(times))
+            return first[-1]
 
-        located = locate(self.system, watched, samples, run(samples)[1].steps, run)
+        located = locate(self.system, watched, samples, run)
         ends, kept = located.end is None and bool(failed), samples
         if ends:
             work["stopped"] = str(failed[0])
         if located.end is not None:
             kept = np.append(samples[samples < located.end], located.end)
             work["stopped"] = f"{watched.condition} at t = {located.end:.9g} s"
-        times, seen = run(np.unique(np.concatenate([kept, *located.times.values()])))
+        at = np.unique(np.concatenate([kept, *located.times.values()]))
+        times, seen = run(at, None if located.end is None else at_last(at))
         kept = np.union1d(kept[kept <= times[-1]], times[-1:]) if ends else kept
         dataset = self._dataset_of(kept, seen.at(np.searchsorted(times, kept)), work)
         dataset = dataset.assign(dict(event_variables(self.system, located, times, seen)))
@@ -135,9 +148,25 @@ class PlannedRun:
             raise failed[0]
         return dataset
 
+    def _sampled(
+        self, times: FloatArray, seen: Trajectory | None, samples: FloatArray, watched: Watched
+    ) -> tuple[FloatArray, Trajectory | None]:
+        """Return a run, sampled more often, at its samples and its last time before it stops."""
+        if seen is None or not times.size:
+            return times[:0], None
+        holds = stop_margin(self.system, watched, seen) > 0 if watched.stop else np.zeros(1)
+        count = int(np.argmax(holds)) if holds.any() else times.size
+        kept = np.flatnonzero(np.isin(times[:count], samples) | (np.arange(count) == count - 1))
+        return times[kept], seen.at(kept)
+
 
 def compiled_run(
-    request: Request, engine: Engine, system: DrivenModule, x: FloatArray, samples: FloatArray
+    request: Request,
+    engine: Engine,
+    system: DrivenModule,
+    x: FloatArray,
+    samples: FloatArray,
+    ended: Ended | None = None,
 ) -> tuple[Trajectory, dict[str, object]]:
     """Return a run in C, with a fixed step or a tolerance, and its work."""
     step = request.step
@@ -146,7 +175,7 @@ def compiled_run(
     try:
         check_inputs(system, x, samples)
     except RunError as error:
-        error.reached = _run_before(error.time, request, system, x, samples)
+        error.reached = _run_before(error.time, request, system, x, samples, ended)
         raise
     rtol = max(request.rtol, LEAST_RTOL)
     accuracy: dict[str, object] = {"rtol": rtol, "order": 2 * stages_for(rtol)[0]}
@@ -154,7 +183,7 @@ def compiled_run(
         if step:
             accuracy = {"step": step.length, "order": step.order}
         given = [system], engine, x[None], samples, step or rtol, request.watch
-        trajectory = collocate(*given, starts=request.starts).trajectory(0)
+        trajectory = collocate(*given, ended=ended, starts=request.starts).trajectory(0)
     except RunError as stopped:
         cause = stop_cause(system, x, samples, stopped)
         cause.reached = stopped.reached
@@ -168,7 +197,12 @@ def compiled_run(
 
 
 def _run_before(
-    end: float, request: Request, system: DrivenModule, x: FloatArray, samples: FloatArray
+    end: float,
+    request: Request,
+    system: DrivenModule,
+    x: FloatArray,
+    samples: FloatArray,
+    ended: Ended | None,
 ) -> tuple[FloatArray, Trajectory]:
     """Return a run to shortly before its inputs leave the domain at `end` [s].
 
@@ -178,7 +212,7 @@ def _run_before(
     before = np.union1d(samples[samples < end], [last])
     duration = float(before[-1]) - system.inputs.start
     shorter = replace(system, inputs=replace(system.inputs, duration=duration))
-    return before, PlannedRun(request, shorter, x).run(before)[0]
+    return PlannedRun(request, shorter, x).run(before, ended)[0].reached(before)
 
 
 def _check_dissipative(engine: Engine, step: FixedStep | None) -> None:

@@ -20,7 +20,7 @@ import numpy as np
 
 from piezo_sym.errors import PiezoError, RunError
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.collocation import Watch
+from piezo_sym.run.collocation import Ended, Watch
 from piezo_sym.run.dataset import Trajectory
 from piezo_sym.run.guard import crossing, domain_error, rate_error
 from piezo_sym.run.inputs import Segment
@@ -32,6 +32,8 @@ ATOL_FACTOR = 1e-3
 NODES = 4  # of the quadrature, exact to degree 7: above the order of every interpolant
 #: The most times, and numbers of states, in a group.
 MOST_STOPS, MOST_NUMBERS = 512, 100_000
+#: The part of a run between two questions whether it has ended.
+ASKED = 1 / 64
 #: The tolerances of the coarse run; ATOL is a fraction of the scale found so far.
 RTOL, ATOL = 1e-3, 1e-2
 GROWTH = 10.0  # of a state over its scale, at which the coarse run restarts with a new scale
@@ -70,11 +72,12 @@ def by_scipy(
     method: str,
     rtol: float,
     watch: Watch | None = None,
+    ended: Ended | None = None,
 ) -> tuple[Trajectory, dict[str, object]]:
     """Return a run of one of SciPy's methods, and its work."""
     scale, spent = magnitudes(system, x)
     tolerance = Tolerance(method, rtol, rtol * ATOL_FACTOR * scale)
-    trajectory = record(system, x, solver_paths(system, x, tolerance), samples, watch)
+    trajectory = record(system, x, solver_paths(system, x, tolerance), samples, watch, ended)
     work = {
         "method": method,
         "rtol": rtol,
@@ -91,8 +94,9 @@ def record(
     run: Iterator[Path],
     times: FloatArray,
     watch: Watch | None = None,
+    ended: Ended | None = None,
 ) -> Trajectory:
-    """Return the trajectory at `times` (nt,) of a run from `start` (n,).
+    """Return the trajectory at `times` (nt,) of a run from `start` (n,); nan where it has `ended`.
 
     An error has the samples reached, and the last time of a step or a sample; `watch` gets the time
     [s] at which each path begins.
@@ -100,8 +104,13 @@ def record(
     result = Trajectory.blank(system, start, times.size)
     total, most = np.zeros(len(result.integrals)), group_size(start)
     since, x = system.inputs.start, start
+    asked = since
     try:
         for path in run:
+            if ended and since > asked + ASKED * system.inputs.duration:
+                asked = since
+                if ended(*result.reached(times)):
+                    break
             steps, evaluations = result.steps + path.steps, result.evaluations + path.evaluations
             result = replace(result, steps=steps, evaluations=evaluations)
             if watch:

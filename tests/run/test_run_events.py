@@ -56,6 +56,18 @@ def test_a_run_stops_where_a_condition_first_holds():
     assert np.abs(run.energy_residual).max() < 1e-12 * float(run.energy[0])
 
 
+@pytest.mark.parametrize("options", [{}, {"method": "LSODA"}])
+def test_a_run_ends_soon_after_it_stops(options):
+    """However long it might have gone on, with the same states until then."""
+    run = {"inputs": DRIVE, "stop": "T_body > 299", "times": np.linspace(0, 0.02, 41), **options}
+    near, far = (simulate("piezo_stack", duration=t, **run) for t in (0.1, 1.0))
+    assert far.time[-1] == pytest.approx(float(near.time[-1]), rel=1e-5)
+    assert float(far.T_body[-1]) == pytest.approx(299, rel=1e-15)
+    whole = simulate("piezo_stack", duration=1.0, **{**run, "stop": None})
+    assert 20 < far.attrs["accepted_steps"] < whole.attrs["accepted_steps"] / 2
+    assert np.array_equal(far.q[:-1], whole.q[: far.sizes["time"] - 1])
+
+
 def test_a_stop_comes_before_what_would_fail():
     """The run would leave its domain, q < 2 mm, later."""
     model = load_text(ENDS)

@@ -82,6 +82,27 @@ def test_a_run_that_is_interrupted_keeps_what_it_has(method):
     assert partial.attrs["stopped"] == "stopped by the user"
 
 
+@pytest.mark.parametrize("calls", [1, 2, 4, 8])
+def test_an_interrupted_run_ends_before_it_stops(calls):
+    """Wherever it is interrupted: before the time is known, or while it is located."""
+    told = []
+
+    def interrupt(t):
+        told.append(t)
+        if len(told) == calls:
+            raise KeyboardInterrupt
+
+    times, stop = np.linspace(0, 2, 401), "T_body > 300"  # at t = 0.0306 s
+    run = {"inputs": DRIVE, "duration": 2, "times": times, "progress": interrupt}
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        simulate("piezo_stack", stop=stop, **run)
+    partial = stopped.value.partial
+    assert np.all(partial.T_body <= 300)
+    assert 0.01 < partial.time[-1] < 0.0306
+    assert np.isin(partial.time[:-1], times).all()
+    assert partial.attrs["stopped"] == "stopped by the user"
+
+
 SPARSE = [
     ("piezo_stack", {}),
     ("piezo_stack", {"step": 2e-5, "dissipative_start": True}),
