@@ -443,7 +443,7 @@ load = { kind = "force_source", at = "tip", input = "F" }
 """
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.usefixtures("cache")
 @pytest.mark.parametrize("start", [0.0, 2e-3])
 def test_what_every_motion_conserves_stays_as_it_was(start):

@@ -86,6 +86,7 @@ def test_a_cache_is_never_in_the_working_folder(name):
     assert [*Path().iterdir()] == []
 
 
+@pytest.mark.long
 def test_a_proof_is_a_proof_for_python_without_docstrings():
     code = """
 from piezo_sym import simulate
@@ -149,6 +150,7 @@ WRONG = (
 )
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize(("good", "old", "new"), WRONG)
 def test_a_wrong_spec_is_refused_whatever_is_kept(good, old, new, capsys):
     path, words = Path("stretched.toml"), ["simulate", "stretched.toml", "--duration", "0.01"]

@@ -53,7 +53,7 @@ WRONGLY_PROVED = {
 }
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("name", WRONGLY_PROVED)
 def test_a_law_that_gives_power_is_not_confirmed(name):
     text = WRONGLY_PROVED[name]

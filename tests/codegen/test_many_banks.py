@@ -69,6 +69,7 @@ def test_rows_of_many_banks(compared):
         assert np.allclose(np.ravel(found), np.ravel(numbers), rtol=1e-12, atol=1e-14)
 
 
+@pytest.mark.long
 def test_banks_of_saturating_coils_run():
     """Their currents are given to stages as means, each lane its own; ends of banks have names."""
     model = load(Path(__file__).with_name("saturating_banks.toml"))

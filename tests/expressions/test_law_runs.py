@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 from piezo_sym import load, simulate, sine, sweep
@@ -30,6 +31,7 @@ def test_members_of_a_sweep_are_what_runs_alone_are():
         assert float(end) == float(alone.T_body[-1])
 
 
+@pytest.mark.long
 def test_a_table_as_damper_runs_as_in_scipy():
     x, y = [-9.5, -0.5, -0.2, 0, 0.2, 0.5, 9.5], [-3.4, -0.4, -0.3, 0, 0.3, 0.4, 3.4]
 

@@ -83,7 +83,7 @@ def test_right_above_the_reference_temperature(compared, above):
         compared.check(heated(compared.exact, compared.fixed(u), x, above), u)
 
 
-@pytest.mark.some(8)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("above", ABOVE)
 def test_on_every_edge(compared, above):
     x, u = compared.base(7)

@@ -117,6 +117,7 @@ def test_a_current_that_is_zero_has_a_kink_of_its_voltage():
     assert check(spec(elements)) == DERIVED
 
 
+@pytest.mark.long
 def test_a_kink_of_what_springs_without_a_sign_give():
     """On the kink the two branches differ by a multiple of the difference that is zero there."""
     elements = {

@@ -70,6 +70,7 @@ def test_a_stack_of_200_layers_runs(tmp_path, monkeypatch):
     assert np.abs(balance).max() < 1e-12 * np.abs(ds["energy"]).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("n", [1, pytest.param(100, marks=pytest.mark.long)])
 def test_time_to_prove_it_grows_with_its_layers(n):
     """The time per layer grows, though not by as much as their number."""

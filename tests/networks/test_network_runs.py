@@ -138,7 +138,7 @@ discontinuous = true
 """
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("accuracy", [{"rtol": 1e-6}, {"step": 1e-3}], ids=str)
 def test_friction_is_right_until_the_block_sticks(accuracy):
     """It slows down by 2 N and stands at 0.5 s, where sign(v) has no value that holds it."""

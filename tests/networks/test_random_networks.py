@@ -71,6 +71,7 @@ def test_every_kind_has_a_strategy():
     assert set(KINDS) == set(elements.KINDS)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("number", "missing"), [(60, 12), pytest.param(2000, 0, marks=pytest.mark.long)]
 )

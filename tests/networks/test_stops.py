@@ -376,6 +376,7 @@ state = "y"
 """
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("more", ["", MORE_STOPS], ids=["alone", "beside a bank"])
 def test_what_drives_stops_may_depend_on_the_state_of_one(more):
     """Their drive is the mass's velocity times a ratio that the stop's own state changes."""

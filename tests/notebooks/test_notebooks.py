@@ -112,6 +112,7 @@ def plant(folder, *sources):
     return path
 
 
+@pytest.mark.long
 def test_a_notebook_is_written_the_same_twice_and_a_changed_output_is_seen(folder):
     picture = "import matplotlib.pyplot as plt\nplt.plot([1, 2]);"
     path = plant(folder, "print('one')\nprint('tw' + 'o')", "1 + 1", picture)

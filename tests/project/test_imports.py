@@ -137,6 +137,7 @@ print("good")
 """
 
 
+@pytest.mark.long
 def test_public_names_are_functions_whatever_was_imported_before(tmp_path):
     assert run(ORDERS, tmp_path, str(ROOT)) == "good\n"
 

@@ -84,7 +84,7 @@ REFUTED = {
 }
 
 
-@pytest.mark.some(5)
+@pytest.mark.some(2)
 @pytest.mark.parametrize(
     ("pairs", "name", "element", "broken", "numbers"), REFUTED.values(), ids=REFUTED
 )
@@ -124,6 +124,7 @@ S = { rate = "entropy" }
 """
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("name", ["exergy", "environment"])
 def test_parameters_refute_a_row_about_a_temperature_that_solvers_do_not_know(name):
     """They know the exponential by bounds: parameters are tried with the spec's own state."""
@@ -132,6 +133,7 @@ def test_parameters_refute_a_row_about_a_temperature_that_solvers_do_not_know(na
     assert Fraction(found.witness["w"]) < 0 < Fraction(found.witness["c"])
 
 
+@pytest.mark.long
 def test_a_row_that_is_false_where_the_domain_has_no_value_says_so():
     spring = 'spring = { kind = "spring", between = ["tip", "wall"], state = "z", stiffness = '
     text = WARM.replace("[elements.body]", spring + '"k/(1 + (q/g)**6)" }\n[elements.body]', 1)

@@ -87,7 +87,7 @@ REFUTED = {
 }
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("name", REFUTED)
 def test_the_conditions_that_mend_a_row_do(name):
     text = REFUTED[name]
@@ -264,7 +264,7 @@ def test_of_a_law_of_the_wrong_sign_that_is_said(known, said):
 STRIBECK = ("R*i*(1 - n*exp(-(i/i_s)**2))", "R*i_s*tanh(i/i_s)*(1 - n*exp(-abs(i)/i_s))")
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("law", STRIBECK)
 def test_conditions_that_the_values_satisfy_are_said_rather_than_others(law):
     """It said -R*n >= 0, of the sum of two terms; n = 1 satisfies n <= 1."""
@@ -276,6 +276,7 @@ def test_conditions_that_the_values_satisfy_are_said_rather_than_others(law):
     assert not unproved(text.replace("MOST", "1"))
 
 
+@pytest.mark.long
 def test_conditions_on_parameters_are_said_rather_than_on_states():
     """No run leaves them; and a margin that divides by w is not PROVED where w may be 0."""
     given = 'w = { value = 1.0, unit = "C" }\nd_c = { value = 2.0, unit = "ohm" }\n[inputs]'

@@ -54,7 +54,7 @@ def test_a_root_law_with_its_unit_is_passive(law, unit):
 ROOTS = ("d*sign(v)*sqrt(abs(v))", "d*v/sqrt(abs(v) + v_0)", "d*v/v_0*sqrt(abs(v))")
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("law", ROOTS)
 def test_a_root_law_is_proved_altogether_and_runs_through_rest(law):
     """The printed slope is no 0/0 at rest, where that of a root alone is infinite."""

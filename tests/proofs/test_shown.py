@@ -67,7 +67,7 @@ states = {{ S = {{ rate = "entropy" }} }}
 HOT = SPEC.replace("[domain]", 'b = {{ value = 1.0, unit = "1" }}\n[domain]').replace(BODY, STORE)
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("energy", "domain", "said", "less"),
     [
@@ -96,7 +96,7 @@ F_c = {{ value = 1.0, unit = "N" }}
 DAMPER = SPEC.replace("[domain]", MORE)
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("law", "said", "less"),
     [
@@ -181,6 +181,7 @@ q = { rate = "velocity", between = ["tip", "wall"] }
 """
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("more", "false"),
     [

@@ -141,6 +141,7 @@ def test_sensitivities_along_a_run_are_differences_of_runs():
     assert np.all(np.abs(by - wanted) <= 1e-6 * np.abs(wanted).max() + 1e-5 * np.abs(wanted))
 
 
+@pytest.mark.long
 def test_a_sensitivity_by_the_exponent_of_a_power_is_a_difference_of_runs():
     """Of Bouc-Wen's n, from rest: where the power is zero, so is its slope."""
     slips = next(path for path in SPECS if path.stem == "slips")

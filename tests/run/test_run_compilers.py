@@ -74,7 +74,7 @@ def test_stages_in_vectors_have_no_warning(module, compiler, tmp_path):
         assert called([*COMPILERS[compiler], *flags], tmp_path) == ""
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_steps_and_laws_have_no_warning(module, compiler, tmp_path):
     texts = [

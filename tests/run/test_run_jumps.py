@@ -223,6 +223,7 @@ def test_a_run_through_what_follows_at_once_has_all_samples_and_closes_its_balan
     assert float(np.abs(found.entropy_residual).max()) <= 1e-12 * float(np.ptp(entropy))
 
 
+@pytest.mark.long
 def test_lsoda_does_not_crawl_after_stops_begin_to_slip(monkeypatch):
     """It kept to steps of 0.2 ns, which the jump of the rates had allowed."""
     steps = iter(range(20_000))

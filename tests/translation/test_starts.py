@@ -100,7 +100,7 @@ def test_starts_as_printed_are_proved(iphs):
     assert row.verdict is Verdict.PROVED, row.reason
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("language", TEXTS[:2])
 def test_no_mutant_of_the_starts_is_proved(iphs, language):
     text, known = printed(iphs)[language], Reference(iphs)

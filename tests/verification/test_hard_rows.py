@@ -84,6 +84,7 @@ def test_of_two_hard_rows_each_is_named(worker):
     assert verdicts(report)["program", ""] is Verdict.PROVED
 
 
+@pytest.mark.long
 def test_a_row_that_takes_more_than_its_share_gets_what_is_left(worker, tmp_path):
     """The system ends it where the interpreter has no turn."""
     once = f"Path({str(tmp_path / 'seen')!r})"
