@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from piezo_sym.errors import FileError, UsageError, legible, nearest, quote
+from piezo_sym.errors import FileError, UsageError, legible, quote, similar
 
 
 def write_text(path: Path, text: str) -> None:
@@ -84,11 +84,13 @@ def read_bytes(path: Path) -> bytes | None:
 
 def near_file(path: Path) -> str:
     """Return the remedy for a missing file: a file beside it with a similar name, if any."""
-    names: list[str] = []
+    stems: dict[str, str] = {}
     with suppress(OSError, ValueError):
-        names = [entry.name for entry in path.parent.iterdir() if entry.suffix == path.suffix]
-    remedy = nearest(path.name, names)
-    return remedy if remedy.startswith("did you mean") else "check the path"
+        for name in sorted(entry.name for entry in path.parent.iterdir()):
+            if similar(Path(name).suffix, [path.suffix]) or not path.suffix:
+                stems.setdefault(Path(name).stem, name)
+    found = similar(path.stem, stems)
+    return f"did you mean '{stems[found]}'?" if found else "check the path"
 
 
 def folder_entries(path: Path) -> list[Path]:

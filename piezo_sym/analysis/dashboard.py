@@ -168,7 +168,7 @@ def _mark(axes: Axes, run: xarray.Dataset) -> dict[str, LineCollection]:
     """Draw the times of events as vertical lines; return those of each event by its name."""
     dashes, marks = cycle(DASHES[:0:-1]), dict[str, LineCollection]()
     for name, hits in run.coords.items():
-        if str(hits.attrs.get("long_name", "")).startswith(EVENT):
+        if hits.size and str(hits.attrs.get("long_name", "")).startswith(EVENT):
             look: dict[str, Any] = {"colors": "0.4", "linestyles": [next(dashes)], "linewidth": 0.7}
             across = axes.get_xaxis_transform()
             marks[str(name)] = axes.vlines(hits.values, 0.0, 1.0, transform=across, **look)

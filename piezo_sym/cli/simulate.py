@@ -238,11 +238,9 @@ def keeping(out: Path | None) -> Iterator[None]:
 def _print(result: xarray.Dataset) -> None:
     end, rows = float(result.time.values[-1]), []
     for name, variable in result.data_vars.items():
-        over = "time" in variable.dims
-        values = variable.isel(time=[0, -1]).values if over else variable.values[None]
-        first, last = values.reshape(len(values), -1)[[0, -1]]  # of an event, those at its hits
-        if not last.size:
+        if "time" not in variable.dims:  # at the times of an event, which have a line of their own
             continue
+        first, last = variable.isel(time=[0, -1]).values.reshape(2, -1)
         pairs_of = zip(last[:4].tolist(), first[:4].tolist(), strict=True)
         value = ", ".join(f"{v:.{_digits(v, v - before)}g}" for v, before in pairs_of)
         more = ", ..." if last.size > 4 else ""

@@ -122,7 +122,7 @@ def increasing(times: FloatArray, where: str) -> FloatArray:
     if np.any(late):
         i = int(np.argmax(late)) + 1
         what = f"time {times[i]:g} at entry {i} follows {times[i - 1]:g}"
-        raise UsageError(what, where, "strictly increasing times")
+        raise UsageError(what, where, "increasing times")
     return times
 
 

@@ -265,6 +265,8 @@ def read_outputs(module: GeneratedModule, outputs: object) -> tuple[str, ...]:
         return ()
     if outputs == EVERY:
         return names
+    if isinstance(outputs, str):
+        outputs = [outputs]
     if not is_vector(outputs):
         expected = f"'{EVERY}', or a list of elements and quantities such as 'damper.heat'"
         raise UsageError(f"{quote(outputs)} is no list of names", OUTPUTS, expected)

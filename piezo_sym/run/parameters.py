@@ -189,7 +189,8 @@ def start_of(
     if (model, sha256) != (module.NAME, module.SPEC_SHA256):
         what = f"this is a run of model {quote(model)}, spec {sha256[:12]}"
         expected = f"one of model '{module.NAME}', spec {module.SPEC_SHA256[:12]}"
-        remedy = "give the run's own spec, and what has changed as parameters (--set)"
+        remedy = "give the run's own spec, and changed values as parameters (--set); "
+        remedy += "of a spec whose laws have changed, give each state in 'initial' (--initial)"
         raise UsageError(what, WHERE, expected, remedy if model == module.NAME else "")
     last = run.isel(time=-1) if run.time.ndim else run  # of one instant
     state: dict[str, Any] = {record.name: last[record.name].values for record in module.STATES}

@@ -30,6 +30,8 @@ OTHERWISE = re.compile(  # t (ms), t/ms
 )
 #: What stands between groups of digits: 1'000.
 GROUPS = re.compile(r"(?<=\d)[\s'_\N{RIGHT SINGLE QUOTATION MARK}](?=\d{3})")
+#: A number with a comma in place of the point: 0,5 or 12,25, but not 1,234.
+DECIMAL_COMMA = re.compile(r"(?:^|[;\t])\s*[-+]?(?:0*,|\d+,(?!\d{3}(?:\D|$)))\d")
 LEAVE_OUT = "delete the line: samples are joined by straight lines"
 AT_ENTRY = re.compile(r"at entry (\d+)")
 #: Endings of names that are meant as units.
@@ -44,6 +46,7 @@ def samples_from_csv(
     A header such as ``t [ms],V_in [V]``, ``t (ms)`` or ``t/ms`` gives the units: times and values
     are converted to SI, and a run refuses values whose dimension is not that of its input. Without
     units, times are in s, and values in the SI unit of the input. A time given twice is a jump.
+    Between semicolons or tabs numbers may have decimal commas.
 
     Parameters
     ----------
@@ -62,6 +65,10 @@ def samples_from_csv(
     headers = column_headers(path)
     t = 0 if time_column is None else _index_of(headers, time_column, f"{path}.time_column")
     x = _other_column(headers, t, path) if column is None else _index_of(headers, column, str(path))
+    if x == t:
+        what = f"column {quote(column)} has the times"
+        remedy = f"others: {listing([name for n, (name, _) in enumerate(headers) if n != t])}"
+        raise UsageError(what, str(path), "a column of values", remedy)
     times, values = _columns(path, t, x)
     seconds, _ = _factor(headers[t], f"{path}, header", "s")
     factor, unit = _factor(headers[x], f"{path}, header")
@@ -175,6 +182,7 @@ def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
                     raise ValueError("cells without header")
             how: Any = {"index_col": False, "dtype": float, "na_filter": False, "usecols": [t, x]}
             how |= {"sep": delimiter, "skipinitialspace": True, "encoding": "utf-8-sig"}
+            how |= {"decimal": "," if delimiter != "," and _has_decimal_commas(path) else "."}
             table = pandas.read_csv(path, **how)
             both = table.to_numpy()[:, [0, 1] if t < x else [1, 0]]
             if np.isfinite(both).all():
@@ -185,9 +193,16 @@ def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
         return both[:, 0], both[:, 1]
 
 
+def _has_decimal_commas(path: Path) -> bool:
+    """Return whether a cell below the header has a comma that groups no thousands."""
+    with path.open(encoding="utf-8-sig") as lines:
+        next(lines)
+        return any(DECIMAL_COMMA.search(line) for line in lines)
+
+
 def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[float, str]:
     """Return the factor of a column's unit to SI, and its SI unit; `expected` is a like unit."""
-    from piezo_sym.expressions.units import parse_unit
+    from piezo_sym.expressions.units import ASCII, parse_unit
 
     name, text = header
     if not text:
@@ -195,7 +210,7 @@ def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[fl
     if text in CELSIUS and not expected:
         return 1.0, "K"
     try:
-        unit = parse_unit(text, where)
+        unit = parse_unit(text.translate(ASCII), where)
     except PiezoError as error:
         raise UsageError(error.what, where, error.expected, error.remedy) from error
     if expected and unit.dimension != parse_unit(expected).dimension:

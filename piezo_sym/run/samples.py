@@ -94,7 +94,7 @@ def read_samples(times: object, values: object, where: str) -> Samples:
         raise UsageError(what, f"{where}.times", "a value before a jump", "leave out the first row")
     for n in np.flatnonzero((t[2:] == t[1:-1]) & (t[1:-1] == t[:-2]))[:1] + 2:
         what = f"time {t[n]:g} at entry {n} follows {t[n]:g} twice"
-        expected = "strictly increasing times, or one twice for a jump between two values"
+        expected = "increasing times, or one twice for a jump between two values"
         raise UsageError(what, f"{where}.times", expected)
     t[twice] = np.nextafter(t[twice], -inf)  # a jump: from the number before this time
     t = increasing(t, f"{where}.times")

@@ -64,7 +64,8 @@ def read_watched(system: DrivenModule, events: object, stop: object, step: objec
     for name, text in given.items():
         where = f"simulate.events.{name}"
         if not isinstance(name, str) or not name.isidentifier() or name in {*known, "time"}:
-            why = ": the run has a quantity of that name" if name in {*known, "time"} else ""
+            taken = ": a quantity or a parameter has that name"
+            why = taken if name in {*known, "time"} else ""
             what = f"{quote(name)} cannot name an event{why}"
             raise UsageError(what, "simulate.events", "a new name of letters, digits and _")
         law = _parsed(parse_law, text, where, '"q - 1e-3"', "{}")

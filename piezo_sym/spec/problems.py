@@ -206,6 +206,8 @@ def _expected(detail: ErrorDetails) -> str:
     if number and "elements" in detail["loc"]:
         key, value = detail["loc"][-1], detail["input"]
         return f'text: {key} = "a", where [parameters] has a = {{ value = {value}, unit = ... }}'
+    if number and detail["loc"][0] == "components" and "inputs" in detail["loc"]:
+        return "the name of an input of this spec; for a fixed value, give that one a default"
     if detail["type"] in {"tuple_type", "too_long"} and detail["loc"][-1] != "assume":
         return "a list of two names, such as ['a', 'b']"
     if detail["type"] == "value_error":

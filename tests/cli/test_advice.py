@@ -153,7 +153,7 @@ SHORT = ["simulate", "oscillator", "--duration", "1"]
         ([*SHORT, "-i", "F=@absent_table.csv"], "No such file or directory; check the path"),
         ([*SHORT, "-i", "F=@drve.csv"], "did you mean 'drive.csv'?"),
         ([*SHORT, "-i", "f=@two.csv"], "simulate.inputs: unknown name 'f'; did you mean 'F'?"),
-        ([*SHORT, "--event", "k=q"], "the run has a quantity of that name"),
+        ([*SHORT, "--event", "k=q"], "a quantity or a parameter has that name"),
         ([*SHORT, "--event", "hit=q>0.005"], "write 'q - 0.005'"),
         ([*SHORT, "--event", "hit=q - 2.5e1um"], "write numbers in SI: 2.5e-05 for 2.5e1um"),
         ([*SHORT, "--stop", "q > 1um"], "write numbers in SI: 1e-06 for 1um"),
@@ -201,7 +201,7 @@ def test_an_operating_point_is_a_start():
 
 def test_a_run_of_an_edited_spec(spec_file):
     run = simulate(spec_file(), duration=1e-4)
-    with pytest.raises(PiezoError, match="what has changed as parameters"):
+    with pytest.raises(PiezoError, match="changed values as parameters"):
         simulate(spec_file("value = 3.5e-3", "value = 4e-3"), duration=1e-4, initial=run)
 
 

@@ -39,8 +39,14 @@ def test_columns_by_name(write):
         ("", {}, FileError, "is empty; expected a header"),
         (b"t,V\n0,\xff\n", {}, FileError, "is not text in UTF-8"),
         ("t,V\n0,1\n1,x\n", {}, FileError, "line 3: 'x' is not a number (column 'V')"),
-        ("t;V\n0;1\n1;2,5\n", {}, FileError, "'2,5' is not a number (column 'V'); expected a num"),
-        ("t;V\n0;1\n1;2,5\n", {}, FileError, "; write decimals with a point"),
+        ("t;V\n0;1\n1;2,500\n", {}, FileError, "; write decimals with a point"),
+        (
+            "t;V\n0;1.5\n1;2,5\n",
+            {},
+            FileError,
+            "'2,5' is not a number (column 'V'); expected a num",
+        ),
+        ("t;V\n0;1\n1;2\n", {"column": "t"}, UsageError, "column 't' has the times; expected a"),
         ("t,V\n0,1\n# x,2\n", {}, FileError, "delete lines that begin with '#'"),
         ("# t,V\n0,1\n1,2\n", {}, FileError, "line 1 begins with '#'; expected a header line"),
         ("% t,V\n0,1\n1,2\n", {}, FileError, "delete the '%', or the lines that begin with it"),
@@ -52,7 +58,7 @@ def test_columns_by_name(write):
             "t,V\n0,1\n1,1\n1,2\n1,3\n2,3\n",
             {},
             UsageError,
-            "in line 5 follows 1 twice; expected strictly",
+            "in line 5 follows 1 twice; expected increasing",
         ),
         ("t,V\n0,1\n\n1\n", {}, FileError, "line 4: '' is not a number"),
         ("t,V\n0,1\n1,1_0\n", {}, FileError, "line 3: '1_0' is not a number"),
@@ -83,7 +89,6 @@ def test_columns_by_name(write):
         ("0,1\n1,2\n2,3\n", {}, FileError, "line 1 has numbers where names are expected"),
         ("t,V\nms,V\n0,1\n", {}, FileError, "units go into the header: t [ms]"),
         ("t (degC),T (K)\n0,1\n1,1\n", {}, UsageError, "unit 'degC' has an offset"),
-        ("t (µs),V\n0,1\n1,1\n", {}, UsageError, "write 'us'"),
         ("t,V [V],V [A]\n0,1,2\n", {"column": "V"}, UsageError, "two columns are named 'V'"),
     ],
 )
@@ -126,6 +131,20 @@ def test_headers_of_instruments_say_units_in_their_ways(write, header):
     assert np.allclose(signal.times, [0, 0.02], rtol=1e-15)
     assert np.allclose(signal.values, [1e3, 2e3], rtol=1e-15)
     assert (signal.unit, signal.assumed) == ("V", "")
+
+
+@pytest.mark.parametrize("unit", ["µs", "us", "\u03bcs"])
+def test_a_micro_in_a_header_is_that_of_instruments(write, unit):
+    assert samples_from_csv(write(f"t [{unit}],V\n0,1\n20,2\n")).times[1] == pytest.approx(2e-5)
+
+
+@pytest.mark.parametrize("mark", [";", "\t"])
+@pytest.mark.parametrize("first", ["0", "0,0", ",0", "-0,000"])
+def test_decimal_commas_stand_between_semicolons_and_tabs(write, mark, first):
+    text = f"t [ms]{mark}V [kV]\n{first}{mark}1\n12,5{mark}-2,25e-3\n1000{mark}3,125\n"
+    signal = samples_from_csv(write(text))
+    assert np.allclose(signal.times, [0, 0.0125, 1])
+    assert np.allclose(signal.values, [1e3, -2.25, 3125])
 
 
 def test_what_stands_in_brackets_and_is_no_unit_is_part_of_a_name(write):

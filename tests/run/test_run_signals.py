@@ -220,7 +220,7 @@ def test_lists_of_times_are_taken_as_arrays(signal):
         (lambda: square(), "square.amplitude: is missing; expected square(amplitude, frequency)"),
         (
             lambda: samples([0, 1, 1, 1], [1, 2, 3, 4]),
-            "at entry 3 follows 1 twice; expected strictly",
+            "at entry 3 follows 1 twice; expected increasing",
         ),
         (lambda: samples([0, 1, 2, 1, 3], [0] * 5), "times: time 1 at entry 3 follows 2"),
         (lambda: sine(1, 2)([0, "x"]), "sine.t[1]: 'x' is not a finite number"),
