@@ -11,7 +11,7 @@ conserves, such as the difference in length of parallel springs, keep their init
 other states of rest are near, as stops slip or currents circulate in dead zones, a run decides.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from math import isnan
 from typing import Any, final
@@ -39,6 +39,8 @@ WHERE = "operating_point"
 #: The step along directions to other states of rest; the least relative change of a temperature per
 #: unit step that is not round-off. The size of an entropy is what changes a temperature by 1e-6.
 STEP, SAME = 1e-2, 1e-9
+#: Searches for a state of rest at which the bodies held have their temperatures.
+MOST_HELD = 50
 MOST_SHOWN = 8  # states, or lanes of one
 
 
@@ -147,8 +149,15 @@ def operating_point(
     check_start(system, start)
     search = RestSearch.of(system, u, start, free)
     rest = Rest.near(search, start)
-    _refuse_open_bodies(module, p, rest.x, rest.directions)
-    return _described(followed(rest, search, start), parameters or {}, list(held))
+    for _ in range(MOST_HELD):
+        at_rest = rest.x.copy()
+        _held(module, p, at_rest, temperatures)
+        if np.allclose(at_rest, rest.x, rtol=ROUND_OFF, atol=0.0):
+            break
+        start[[*held.values()]] = at_rest[[*held.values()]]
+        rest = Rest.near(search, start)
+    _refuse_open_bodies(module, p, rest.x, rest.directions, held)
+    return _described(followed(rest, search, start), parameters or {}, held)
 
 
 def read_constants(
@@ -173,9 +182,13 @@ def _held(
 
 
 def _refuse_open_bodies(
-    module: GeneratedModule, p: Any, x: FloatArray, directions: FloatArray
+    module: GeneratedModule,
+    p: Any,
+    x: FloatArray,
+    directions: FloatArray,
+    held: Collection[str],
 ) -> None:
-    """Raise `RunError` if the temperature of a body differs between states of rest.
+    """Raise `RunError` if the temperature of a body that is free differs between states of rest.
 
     `directions` (n, k) lead to other states of rest; stores may change along them.
     """
@@ -186,14 +199,28 @@ def _refuse_open_bodies(
     )
     change = np.abs(ahead - behind) / (STEP * (ahead + behind))
     for body, differs in zip(module.BODIES, change > SAME, strict=True):
-        if np.any(differs):
+        if np.any(differs) and body.name not in held:
             what = f"rest leaves the temperature of '{body.name}' open: it depends on the way there"
             held = f"operating_point(..., temperatures={{'{body.name}': ...}})"
             remedy = f"hold it: {held}, for linearize as 'at'; or simulate() until it rests"
             raise RunError(what, f"model '{module.NAME}'", remedy=remedy)
 
 
-def _described(rest: Rest, parameters: Mapping[str, LaneValue], held: list[str]) -> OperatingPoint:
+def _isothermal(
+    module: GeneratedModule, p: Any, x: FloatArray, jacobian: FloatArray, held: Mapping[str, int]
+) -> FloatArray:
+    """Return the Jacobian (n, n) where the entropies of held bodies keep their temperatures."""
+    bodies, rows = [record.name for record in module.BODIES], [*held.values()]
+    step = 1e-6 * np.maximum(np.abs(x), 1.0)
+    ahead, behind = (module.temperatures(x[:, None] + np.diag(s), p) for s in (step, -step))
+    change = ((ahead - behind) / (2 * step))[[bodies.index(name) for name in held]]
+    entropies = -np.linalg.solve(change[:, rows], change)  # (held, n)
+    return np.asarray(jacobian + jacobian[:, rows] @ entropies)
+
+
+def _described(
+    rest: Rest, parameters: Mapping[str, LaneValue], held: Mapping[str, int]
+) -> OperatingPoint:
     search, x, open_ = rest.search, rest.x, rest.directions.any(axis=1)
     module, p, u = search.module, search.system.parameters, search.u
     temperatures = by_name(module.BODIES, p, module.temperatures(x, p))
@@ -202,7 +229,7 @@ def _described(rest: Rest, parameters: Mapping[str, LaneValue], held: list[str])
     for name in held:
         body = [record.name for record in module.BODIES].index(name)
         holding[name] = -temperatures[name] * float(rates[entropy_row(module, p, x, body)])
-    jacobian = search.jacobian(x)
+    jacobian = _isothermal(module, p, x, search.jacobian(x), held)
     eigenvalues = np.linalg.eigvals(jacobian[np.ix_(search.free, search.free)])
     margin = ROUND_OFF * float(np.max(np.abs(eigenvalues), initial=0.0))
     y = np.asarray(module.outputs(x, u, p))

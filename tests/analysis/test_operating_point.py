@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from piezo_sym import load, operating_point, simulate
 from piezo_sym.errors import RunError, UsageError
@@ -277,3 +278,41 @@ def test_stops_rest_within_their_limits(volts: float) -> None:
     assert float(k * q + (k_s * z).sum()) == pytest.approx(float(p["a"].si) * volts, rel=1e-9)
     run = simulate("stack_maxwell", inputs={"V_in": volts}, initial=found.initial, duration=1e-2)
     assert float(np.abs(run.q - q).max()) <= 1e-9 * q
+
+
+SOFTENING = Path(__file__).parent / "specs" / "warm_softening.toml"
+
+
+def test_a_store_whose_temperature_depends_on_its_position_is_held_at_a_temperature() -> None:
+    """U = k (1 - b (h - T_0)) q**2/2 + c h with h = T_0 exp(S/c): F = k (1 - b (h - T_0)) q = 1."""
+    k, b, d, T_0, c, lam, T = 4.0, 1e-3, 0.4, 300.0, 2.0, 0.1, 340.0
+
+    def position(h: float) -> float:
+        return float(1 / (k * (1 - b * (h - T_0))))
+
+    def ratio(h: float) -> float:  # of temperature and h
+        return float(1 - k * b * position(h) ** 2 / (2 * c))
+
+    h = float(brentq(lambda h: h * ratio(h) - T, 300, 400, xtol=1e-12))
+    q = position(h)
+    found = operating_point(SOFTENING, temperatures={"body": T})
+    assert found.temperatures["body"] == pytest.approx(T, rel=1e-13)
+    assert found.initial["q"] == pytest.approx(q, rel=1e-12)
+    assert found.initial["S"] == pytest.approx(c * np.log(h / T_0), rel=1e-11)
+    assert found.holding["body"] == pytest.approx(lam * (T - T_0), rel=1e-12)
+    # the stiffness at this temperature: h changes with q
+    stiffness = k * (1 - b * (h - T_0)) - k * b * q * (h * k * b * q / c / ratio(h))
+    assert found.eigenvalues[0].real == pytest.approx(-d / 2, rel=1e-6)
+    assert abs(found.eigenvalues[0]) ** 2 == pytest.approx(stiffness, rel=1e-6)
+
+
+def test_what_is_held_has_no_open_temperature_where_history_decides(tmp_path: Path) -> None:
+    text = SOFTENING.read_text().replace("warm_softening", "warm_hysteretic")
+    text = text.replace("[inputs]", 'f_b = { value = 0.2, unit = "N" }\n[inputs]')
+    text = text.replace("assume = [", 'assume = ["f_b > 0", ')
+    spring = 'k2 = { kind = "spring", between = ["tip", "wall"], stiffness = "k", state = "z", '
+    spring += 'slip = "(0.6*abs(v)*sign(f) + 0.4*v)*abs(f/f_b)", heats = "body" }'
+    (tmp_path / "held.toml").write_text(text.replace("[elements]", f"[elements]\n{spring}"))
+    found = operating_point(tmp_path / "held.toml", temperatures={"body": 340.0})
+    assert found.temperatures["body"] == pytest.approx(340, rel=1e-13)
+    assert {"z", "q"} <= {*found.undetermined}
