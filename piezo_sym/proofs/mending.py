@@ -245,6 +245,8 @@ def _of_branch(
 ) -> list[Expr] | None:
     """Return what has to be >= 0 on a branch, if need be found for each sign of the letter."""
     inside = [Cmp(STRICT.get(c.op, c.op), c.left, c.right) for c in branch.conditions]
+    if within(inside)(Neg(ONE)):
+        return []  # no point is on it, or those of an edge alone
     own = _coefficients(branch, letter, fixed, within(inside))
     if own is not None or not letter:
         return own

@@ -150,6 +150,7 @@ mass"""
         (WEN, "beta >= abs(gam)"),
         (WEN.replace("gam*v", "beta*v"), "beta >= 0"),
         (WEN.replace("abs(f)", "f"), "beta >= abs(gam)"),
+        ("(beta*abs(v)*sign(f) + gam*v)*abs(f/f_0)", "beta >= abs(gam)"),
     ],
 )
 def test_bouc_wen_is_told_its_condition(law, said):
