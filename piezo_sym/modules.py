@@ -231,7 +231,7 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
 def _compiling_ahead(
     name: str, shape: str, texts: Mapping[str, str], stages: int | None
 ) -> Iterator[None]:
-    """Compile the steps of a run, and import xarray for its result, while a module is proved.
+    """Compile the steps of a run, and import what its result needs, while a module is proved.
 
     If the proof fails, the compiler is not waited for.
     """
@@ -252,6 +252,7 @@ def _compiling_ahead(
 
 def _import_results() -> None:
     with suppress(ImportError):  # the run says so
+        import scipy.io  # of a file in NetCDF
         import xarray  # noqa: F401
 
 
