@@ -252,7 +252,7 @@ def _compiling_ahead(
 
 def _import_results() -> None:
     with suppress(ImportError):  # the run says so
-        import scipy.io  # of a file in NetCDF
+        import scipy.io  # noqa: F401 - of a file in NetCDF
         import xarray  # noqa: F401
 
 
