@@ -125,6 +125,7 @@ def _equations(iphs: IPHS) -> Iterator[str]:
     width = max(len(left) for left, _ in pairs)
     yield from (f"  {left.ljust(width)} = {right}" for left, right in pairs)
     yield from _joined(iphs)
+    yield from _casimirs(iphs)
     yield from _domain(iphs)
     yield from _matrix("J0, structure matrix", system.J0)
     for k, process in enumerate(system.processes):
@@ -143,6 +144,16 @@ def _joined(iphs: IPHS) -> Iterator[str]:
         for m in joint.members:
             law = f"{m.store.costate} = {spell(joint.costate(m))}, " if m in joint.followers else ""
             yield f"  {m.element}: {law}energy {spell(m.energy)}"
+
+
+def _casimirs(iphs: IPHS) -> Iterator[str]:
+    """Yield the linear functions that keep the values which the initial state gives them."""
+    from piezo_sym.algebra.notation import text
+    from piezo_sym.iphs.casimirs import linear_casimirs
+
+    functions = linear_casimirs(iphs)
+    yield from ["\nKept as at t = 0, whatever moves"] if functions else []
+    yield from (f"  {text(function)}" for function in functions)
 
 
 def _domain(iphs: IPHS) -> Iterator[str]:

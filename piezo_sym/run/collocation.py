@@ -5,24 +5,21 @@ a tolerance or a `FixedStep`.  Output: `Runs`, whose states are those of their l
 """
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import ceil
-from threading import Thread
 from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import PiezoError, RunError, UsageError, listing, quote
+from piezo_sym.errors import RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.dataset import Trajectory
-from piezo_sym.run.engine.batch import Batch, Stepping, steps_of
-from piezo_sym.run.engine.engine import Engine, engine_of, functions_of
-from piezo_sym.run.engine.library import Layout, Sources, library
+from piezo_sym.run.engine.batch import Batch, Stepping
+from piezo_sym.run.engine.engine import Engine
+from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.inputs import Inputs, Segment
-from piezo_sym.run.module import GeneratedModule, row_count
 from piezo_sym.run.stuck import stuck_error
 from piezo_sym.run.system import QUIET, DrivenModule
 
@@ -253,25 +250,6 @@ def layout_of(runs: int, states: int, *, side_by_side: bool) -> Layout:
     if states > MOST_STATES:
         return "lanes"
     return "many" if runs > 1 and side_by_side else "one"
-
-
-def compile_ahead(module: GeneratedModule, stages: int) -> None:
-    """Compile what one run of a module needs with steps of `stages` stages, if possible."""
-    layout = layout_of(1, row_count(module.STATES, module.Parameters()), side_by_side=True)
-    with suppress(PiezoError, OSError):  # the run raises it
-        functions = functions_of(module)
-        steps = steps_of(module, functions, stages, layout)
-        beside = Thread(target=_compiled, args=(steps,), daemon=True)
-        beside.start()
-        try:
-            engine_of(module)
-        finally:
-            beside.join()
-
-
-def _compiled(sources: Sources) -> None:
-    with suppress(PiezoError, OSError):
-        library(sources)
 
 
 def read_order(order: object, where: str) -> int:

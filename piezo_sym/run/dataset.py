@@ -19,10 +19,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.errors import UsageError, listing, nearest, quote, similar
-from piezo_sym.run.checks import FloatArray, is_vector
+from piezo_sym.errors import UsageError, quote
+from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.module import (
-    GeneratedModule,
     Record,
     heat_exchanges,
     lanes,
@@ -41,8 +40,6 @@ Named: TypeAlias = tuple[str, Variable]
 Field: TypeAlias = tuple[str, tuple[str, ...], tuple[int, ...], tuple[tuple[str, Any], ...]]
 #: Datasets of at most so many samples are kept to be copied.
 MOST_KEPT = 10_000
-#: The argument that selects quantities of elements, and its value for all of them.
-OUTPUTS, EVERY = "simulate.outputs", "all"
 #: How the heat of a conduction is described: no heat is released, and it may be negative.
 CONDUCTED = "heat conducted"
 
@@ -256,48 +253,3 @@ def coordinates(counts: Iterable[tuple[str, int]], times: FloatArray) -> Iterato
 def attributes(unit: str, long_name: str) -> dict[str, Any]:
     """Return the attributes of a variable."""
     return {"units": unit, "long_name": long_name}
-
-
-def read_outputs(module: GeneratedModule, outputs: object) -> tuple[str, ...]:
-    """Return the selected quantities of elements, in the module's order."""
-    names = tuple(record.name for record in module.ELEMENTS)
-    if outputs is None:
-        return ()
-    if outputs == EVERY:
-        return names
-    if isinstance(outputs, str):
-        outputs = [outputs]
-    if not is_vector(outputs):
-        expected = f"'{EVERY}', or a list of elements and quantities such as 'damper.heat'"
-        raise UsageError(f"{quote(outputs)} is no list of names", OUTPUTS, expected)
-    wanted = set[str]()
-    for output in outputs:  # type: ignore[attr-defined]  # a vector
-        matching = [name for name in names if output in (name, name.rpartition(".")[0])]
-        if not matching:
-            remedy = element_remedy(str(output), names)
-            expected = "elements and their quantities, beside what every run has, as y_<port>"
-            raise UsageError(f"unknown name {quote(output)}", OUTPUTS, expected, remedy)
-        wanted.update(matching)
-    return tuple(name for name in names if name in wanted)
-
-
-def element_remedy(output: str, names: tuple[str, ...]) -> str:
-    """Return what to write for an unknown element or quantity of one: the known `names`."""
-    element = output.rpartition(".")[0]
-    known = [name.rpartition(".") for name in names]
-    if quantities := [quantity for other, _, quantity in known if other == element]:
-        return f"'{element}' has {listing(quantities)}"
-    elements = [*dict.fromkeys(other for other, _, _ in known)]
-    return nearest(output, [*elements, *names] if similar(output, names) else elements)
-
-
-def element_variables(
-    system: DrivenModule, run: Trajectory, names: tuple[str, ...]
-) -> Iterator[Named]:
-    """Yield the quantities of elements with these names over a run."""
-    if names:
-        module = system.module
-        values = module.elements(run.states, run.inputs, system.parameters)
-        for name, variable in named_rows(system, ("time",), module.ELEMENTS, values):
-            if name in names:
-                yield name, variable

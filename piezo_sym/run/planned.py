@@ -16,7 +16,8 @@ import numpy as np
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD, Ended, FixedStep, Watch, collocate, stages_for
-from piezo_sym.run.dataset import Trajectory, element_variables, to_dataset
+from piezo_sym.run.dataset import Trajectory, to_dataset
+from piezo_sym.run.elements import element_variables
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.events import at_last, event_variables, locate, stop_margin

@@ -60,6 +60,11 @@ class Path:
         inner = times[(times > self.edges[0]) & (times <= self.edges[-1])]
         return np.union1d(self.edges[1:], inner) if self.edges.size > 1 else self.edges
 
+    def groups(self, times: FloatArray, most: int) -> list[FloatArray]:
+        """Return its `stops` in groups of at most so many."""
+        stops = self.stops(times)
+        return np.split(stops, range(most, stops.size, most))
+
     def point(self, t: float) -> tuple[FloatArray, FloatArray]:
         """Return the state (n,) and the inputs (m,) at one time."""
         return self.states(np.array([t]))[:, 0], self.segment.at(t)
@@ -104,38 +109,50 @@ def record(
     result = Trajectory.blank(system, start, times.size)
     total, most = np.zeros(len(result.integrals)), group_size(start)
     since, x = system.inputs.start, start
-    asked = since
+    stops = _now_and_then(ended, times, since, ASKED * system.inputs.duration)
     try:
         for path in run:
-            if ended and since > asked + ASKED * system.inputs.duration:
-                asked = since
-                if ended(*result.reached(times)):
-                    break
-            steps, evaluations = result.steps + path.steps, result.evaluations + path.evaluations
-            result = replace(result, steps=steps, evaluations=evaluations)
+            if stops(since, result):
+                break
             if watch:
                 watch(since)
-            all_stops = path.stops(times)
-            for stops in np.split(all_stops, range(most, all_stops.size, most)):
-                sums = total[:, None] + np.cumsum(increments(system, path, since, stops), axis=1)
-                valid = in_domain(system, path, stops)
-                kept = np.isin(stops, times) & (np.cumsum(~valid) == 0)
-                places = np.searchsorted(times, stops[kept])
-                states = path.states(stops)
+            steps, evaluations = result.steps + path.steps, result.evaluations + path.evaluations
+            result = replace(result, steps=steps, evaluations=evaluations)
+            for at in path.groups(times, most):
+                sums = total[:, None] + np.cumsum(increments(system, path, since, at), axis=1)
+                valid = in_domain(system, path, at)
+                kept = np.isin(at, times) & (np.cumsum(~valid) == 0)
+                places = np.searchsorted(times, at[kept])
+                states = path.states(at)
                 result.states[:, places] = states[:, kept]
-                result.inputs[:, places] = system.inputs.at_samples(stops[kept])
+                result.inputs[:, places] = system.inputs.at_samples(at[kept])
                 result.integrals[:, places] = sums[:, kept]
                 good = valid.size if valid.all() else int(np.argmin(valid))
                 if good:
-                    since, x, total = float(stops[good - 1]), states[:, good - 1], sums[:, good - 1]
+                    since, x, total = float(at[good - 1]), states[:, good - 1], sums[:, good - 1]
                 if good < valid.size:
-                    raise exit_error(system, path, since, float(stops[good]))
+                    raise exit_error(system, path, since, float(at[good]))
     except (RunError, KeyboardInterrupt) as stopped:
         u = system.inputs.at_samples(np.array([since]))
         last = replace(result, states=x[:, None], inputs=u, integrals=total[:, None])
         vars(stopped)["reached"] = result.until(times, since, last)
         raise
     return result
+
+
+def _now_and_then(
+    ended: Ended | None, times: FloatArray, asked: float, apart: float
+) -> Callable[[float, Trajectory], bool]:
+    """Return what asks whether a run has ended, at times `apart` [s] after the last one `asked`."""
+
+    def stops(t: float, run: Trajectory) -> bool:
+        nonlocal asked
+        if ended is None or t <= asked + apart:
+            return False
+        asked = t
+        return ended(*run.reached(times))
+
+    return stops
 
 
 def group_size(x: FloatArray) -> int:

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import METHOD, FixedStep, read_order, stages_for
-from piezo_sym.run.dataset import read_outputs
+from piezo_sym.run.elements import read_outputs
 from piezo_sym.run.guard import slack_of
 from piezo_sym.run.inputs import InputValue, warn_undriven
 from piezo_sym.run.method import checked_method, choose_method

@@ -16,7 +16,7 @@ from piezo_sym.expressions.incomplete import CONSTANTS, OR, conditions_of
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import ZERO, Add, Call, Expr, Mul, Neg, Num, names, rename
-from piezo_sym.run.dataset import element_remedy
+from piezo_sym.run.elements import element_remedy
 from piezo_sym.run.module import row_names
 from piezo_sym.run.system import DrivenModule
 
