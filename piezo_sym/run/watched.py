@@ -59,6 +59,8 @@ def read_watched(system: DrivenModule, events: object, stop: object, step: objec
     if step is not None and (given or stop is not None):
         what = "with a fixed step, events are not located"
         raise UsageError(what, "simulate.step", "rtol", "leave out step, or events and stop")
+    if not given and stop is None:
+        return Watched({}, None)
     known = quantity_names(system)
     laws = {}
     for name, text in given.items():
