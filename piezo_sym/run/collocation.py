@@ -26,15 +26,16 @@ from piezo_sym.run.system import QUIET, DrivenModule
 METHOD = "discrete_gradient"
 #: Called with the time [s] that runs have reached, every few milliseconds; an exception ends them.
 Watch: TypeAlias = Callable[[float], object]
-#: Called with the times reached of those of a run's samples, and the run there, every millisecond
-#: or so: whether the run may end.
-Ended: TypeAlias = Callable[[FloatArray, Trajectory], bool]
+#: Returns the samples behind a time [s] that a run has reached so far: times, and the run there.
+Later: TypeAlias = Callable[[float], tuple[FloatArray, Trajectory]]
+#: Called now and then with the time [s] that a run has reached: whether it may end.
+Ended: TypeAlias = Callable[[float, Later], bool]
 #: The first step, the longest step, and the longest step of the coarse run, over the duration.
 FIRST, LONGEST, SURVEYED = 1e-5, 0.25, 1 / 64
 #: States times steps between two calls of `watch`: some milliseconds.
 CHUNK = 50_000
-#: Those between two questions whether a run has ended, in parts of a chunk.
-ASKED = 8
+#: Steps between two questions whether a run has ended: a part of a chunk, and the least number.
+ASKED, FEWEST = 8, 16
 #: In runs of more states, vectors hold lanes of banks instead of runs.
 MOST_STATES = 32
 #: (least rtol, cheapest number of stages, tolerance of a step's estimated error over rtol); the
@@ -90,9 +91,13 @@ class Runs:
         end = replace(self, times=t, states=x[None], sums=ledger[None, :, 0])
         return self.so_far(k).until(self.times, float(t[0]), end.so_far(0))
 
-    def samples(self, k: int) -> tuple[FloatArray, Trajectory]:
-        """Return the times and run k at the samples that it has reached."""
-        return self.so_far(k).reached(self.times)
+    def later(self, since: float) -> tuple[FloatArray, Trajectory]:
+        """Return the first run at the samples that it has reached behind a time [s]."""
+        ends = np.searchsorted(self.times, [since, self.ends[0][0]], side="right")
+        rows = slice(*ends.tolist())
+        states, sums = self.states[:, rows], self.sums[:, rows]
+        new = replace(self, times=self.times[rows], states=states, sums=sums)
+        return new.so_far(0).reached(new.times)
 
     def so_far(self, k: int) -> Trajectory:
         """Return run k; samples that it has not reached are nan."""
@@ -161,7 +166,7 @@ def _goes_on(
     times: FloatArray,
     ended: Ended,
 ) -> bool:
-    return not ended(*results_of(batch, systems, x, times).samples(0))
+    return not ended(float(batch.records["t"][0]), results_of(batch, systems, x, times).later)
 
 
 def set_scales(
@@ -196,7 +201,8 @@ def advance(
     batch: Batch, watch: Watch | None = None, goes_on: Callable[[], bool] | None = None
 ) -> None:
     """Advance runs while they go on, and tell `watch` the mean time they have reached."""
-    most = max(1, CHUNK // batch.x.shape[1] // (ASKED if goes_on else 1))
+    most = max(1, CHUNK // batch.x.shape[1])
+    most = max(FEWEST, most // ASKED) if goes_on else most
     while batch.go(most) and (goes_on is None or goes_on()):
         if watch:
             watch(float(np.mean(batch.records["t"])))

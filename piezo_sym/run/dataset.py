@@ -85,6 +85,11 @@ class Trajectory:
         count = int(np.argmax(missing)) if missing.any() else missing.size
         return times[:count], self.at(np.arange(count))
 
+    def later(self, times: FloatArray, t: float, since: float) -> tuple[FloatArray, Trajectory]:
+        """Return the times and the run at its samples behind the time `since` and up to t [s]."""
+        rows = np.arange(*np.searchsorted(times, [since, t], side="right").tolist())
+        return self.at(rows).reached(times[rows])
+
     def until(self, times: FloatArray, t: float, last: Trajectory) -> tuple[FloatArray, Trajectory]:
         """Return the times and the run at the samples reached, and at `last`, if t [s] is later."""
         times, run = self.reached(times)

@@ -5,7 +5,7 @@ each event, and when the run stops.
 
 A sample is a step of its own from the last accepted state, so more samples do not change the run:
 it is sampled at the user's times, until the first of them at which it stops; then four times per
-step, and again where signs change.  No run goes on for long behind its last sample.
+step, and again where signs change.  None of these runs goes on for long behind what is looked for.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -20,7 +20,7 @@ from piezo_sym.errors import UsageError, quote
 from piezo_sym.expressions.exact_eval import evaluate
 from piezo_sym.expressions.tree import Expr, names
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.collocation import Ended
+from piezo_sym.run.collocation import Ended, Later
 from piezo_sym.run.dataset import Evaluation, Trajectory, attributes
 from piezo_sym.run.module import rows
 from piezo_sym.run.system import DrivenModule
@@ -76,7 +76,7 @@ def values_of(system: DrivenModule, tree: Expr, trajectory: Trajectory) -> Float
 
 def at_last(times: FloatArray) -> Ended:
     """Return what ends a run behind the last of some samples."""
-    return lambda reached, _: reached.size > 0 and bool(reached[-1] >= times[-1])
+    return lambda t, _: t >= times[-1]
 
 
 @final
@@ -85,22 +85,30 @@ class _Scout:
 
     Attributes
     ----------
-    looked : how many samples it has looked at.
+    looked : the time [s] of the last sample that it has looked at.
     end : the time of the first at which the run stops [s]; infinity so far.
     """
 
     def __init__(self, system: DrivenModule, watched: Watched) -> None:
         self.system, self.watched = system, watched
-        self.looked, self.end = 0, inf
+        self.looked, self.end, self.next = -inf, inf, -inf
 
-    def ended(self, times: FloatArray, seen: Trajectory) -> bool:
-        """Return whether the run stops at one of the samples reached."""
-        new = np.arange(self.looked, times.size)
-        holds = np.flatnonzero(stop_margin(self.system, self.watched, seen.at(new)) > 0)
-        if holds.size:
-            self.end = min(self.end, float(times[new[holds[0]]]))
-        self.looked = times.size
+    def ended(self, t: float, later: Later) -> bool:
+        """Return whether the run stops at one of the samples that it has reached by t [s].
+
+        It looks again when the run is a quarter longer.
+        """
+        if t >= self.next:
+            self.next = t + (t - self.system.inputs.start) / 4
+            self.look(*later(self.looked))
         return self.end < inf
+
+    def look(self, times: FloatArray, seen: Trajectory) -> None:
+        """Look at later samples than those before."""
+        holds = np.flatnonzero(stop_margin(self.system, self.watched, seen) > 0)
+        if holds.size:
+            self.end = min(self.end, float(times[holds[0]]))
+        self.looked = float(times[-1]) if times.size else self.looked
 
 
 def stop_margin(system: DrivenModule, watched: Watched, seen: Trajectory) -> FloatArray:
@@ -116,8 +124,10 @@ def locate(system: DrivenModule, watched: Watched, samples: FloatArray, run: Sam
         scout = _Scout(system, watched)
         times = np.union1d(samples, np.linspace(start, end, LEAST))
     times, seen = run(times, scout and scout.ended)
-    if scout and scout.ended(times, seen):
-        end = scout.end
+    if scout:
+        rest = np.flatnonzero(times > scout.looked)
+        scout.look(times[rest], seen.at(rest))
+        end = min(end, scout.end)
     even = np.linspace(start, end, min(max(PER_STEP * seen.steps, LEAST), MOST))
     times, seen = run(np.union1d(samples[samples <= end], even), at_last(even))
     brackets: list[_Bracket] = []

@@ -124,15 +124,19 @@ class PlannedRun:
                 failed.append(error)
                 times, trajectory = error.reached
             except KeyboardInterrupt as stopped:
-                reached = first or [vars(stopped).get("reached", (times[:0], None))]
-                vars(stopped)["reached"] = self._sampled(*reached[0], samples, watched)
+                first.extend([vars(stopped)["reached"]] if "reached" in vars(stopped) else [])
                 raise
             else:
                 work.update(attrs)
             first.append(trajectory.reached(times))
             return first[-1]
 
-        located = locate(self.system, watched, samples, run)
+        try:
+            located = locate(self.system, watched, samples, run)
+        except KeyboardInterrupt as stopped:
+            if first:
+                vars(stopped)["reached"] = self._sampled(*first[0], samples, watched)
+            raise
         ends, kept = located.end is None and bool(failed), samples
         if ends:
             work["stopped"] = str(failed[0])
@@ -150,11 +154,9 @@ class PlannedRun:
         return dataset
 
     def _sampled(
-        self, times: FloatArray, seen: Trajectory | None, samples: FloatArray, watched: Watched
-    ) -> tuple[FloatArray, Trajectory | None]:
+        self, times: FloatArray, seen: Trajectory, samples: FloatArray, watched: Watched
+    ) -> tuple[FloatArray, Trajectory]:
         """Return a run, sampled more often, at its samples and its last time before it stops."""
-        if seen is None or not times.size:
-            return times[:0], None
         holds = stop_margin(self.system, watched, seen) > 0 if watched.stop else np.zeros(1)
         count = int(np.argmax(holds)) if holds.any() else times.size
         kept = np.flatnonzero(np.isin(times[:count], samples) | (np.arange(count) == count - 1))

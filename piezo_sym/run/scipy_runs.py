@@ -32,8 +32,6 @@ ATOL_FACTOR = 1e-3
 NODES = 4  # of the quadrature, exact to degree 7: above the order of every interpolant
 #: The most times, and numbers of states, in a group.
 MOST_STOPS, MOST_NUMBERS = 512, 100_000
-#: The part of a run between two questions whether it has ended.
-ASKED = 1 / 64
 #: The tolerances of the coarse run; ATOL is a fraction of the scale found so far.
 RTOL, ATOL = 1e-3, 1e-2
 GROWTH = 10.0  # of a state over its scale, at which the coarse run restarts with a new scale
@@ -109,10 +107,9 @@ def record(
     result = Trajectory.blank(system, start, times.size)
     total, most = np.zeros(len(result.integrals)), group_size(start)
     since, x = system.inputs.start, start
-    stops = _now_and_then(ended, times, since, ASKED * system.inputs.duration)
     try:
         for path in run:
-            if stops(since, result):
+            if ended and ended(since, partial(result.later, times, since)):
                 break
             if watch:
                 watch(since)
@@ -138,21 +135,6 @@ def record(
         vars(stopped)["reached"] = result.until(times, since, last)
         raise
     return result
-
-
-def _now_and_then(
-    ended: Ended | None, times: FloatArray, asked: float, apart: float
-) -> Callable[[float, Trajectory], bool]:
-    """Return what asks whether a run has ended, at times `apart` [s] after the last one `asked`."""
-
-    def stops(t: float, run: Trajectory) -> bool:
-        nonlocal asked
-        if ended is None or t <= asked + apart:
-            return False
-        asked = t
-        return ended(*run.reached(times))
-
-    return stops
 
 
 def group_size(x: FloatArray) -> int:
