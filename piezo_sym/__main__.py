@@ -4,11 +4,14 @@ Input: the words of a command line.  Output: what `piezo_sym.cli` makes of them.
 """
 
 import gc
+import os
 import signal
 import sys
 from contextlib import suppress
+from pathlib import Path
 
 from piezo_sym.errors import PiezoError
+from piezo_sym.interrupts import STOPPED
 
 #: Of garbage collection: a command makes many objects, by imports above all, but little garbage.
 THRESHOLDS = 100_000, 50, 100
@@ -18,10 +21,14 @@ def main() -> None:
     """Run the command line and exit with its code; SIGTERM stops it as Ctrl-C does."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     gc.set_threshold(*THRESHOLDS)
-    start_examiner(sys.argv[1:])
-    from piezo_sym.cli import run
+    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115 - it was closed
+    try:
+        start_examiner(sys.argv[1:])
+        from piezo_sym.cli import run
 
-    code = run(sys.argv[1:])
+        code = run(sys.argv[1:])
+    except KeyboardInterrupt:  # before the command has begun
+        sys.exit(STOPPED)
     gc.freeze()  # the system takes back the memory of all objects at once
     sys.exit(code)
 
@@ -34,18 +41,21 @@ def start_examiner(words: list[str]) -> None:
     if words[:1] in (["verify"], ["generate"]) or (words[:1] == ["simulate"] and _is_new(file)):
         from piezo_sym.verification.process import started
 
-        started()
+        with suppress(OSError):  # the command tries again
+            started()
 
 
 def _is_new(file: str) -> bool:
     """Return whether a spec file was never loaded, nor one that differs from it in values alone."""
     from piezo_sym.module_cache import was_loaded
-    from piezo_sym.spec.source import data, find, read
+    from piezo_sym.spec.source import MODELS, data, read
     from piezo_sym.spec.values import without_values
 
-    with suppress(PiezoError):  # the command says so
-        content = data(read(find(file)))
-        return not (was_loaded(content) or was_loaded(without_values(content)))
+    path = Path(file)
+    with suppress(PiezoError, OSError, ValueError):  # the command says so
+        if path.is_file() and path.parent != MODELS:  # a pipe can be read once
+            content = data(read(path))
+            return not (was_loaded(content) or was_loaded(without_values(content)))
     return False
 
 

@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import current_thread, main_thread
 
+#: Exit code of a command that the user stopped (Ctrl-C), as in shells.
+STOPPED = 130
 _ENDINGS = (signal.SIGINT, signal.SIGTERM)
 
 

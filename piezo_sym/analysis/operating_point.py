@@ -19,6 +19,7 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+from piezo_sym.analysis.held import Held, held_of
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.analysis.settling import Rest, followed
 from piezo_sym.errors import RunError, listing
@@ -28,7 +29,6 @@ from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import GeneratedModule, by_name, checked, names_elsewhere, row_name
 from piezo_sym.run.parameters import (
     LaneValue,
-    entropy_row,
     read_initial,
     read_parameters,
     set_temperature,
@@ -39,8 +39,6 @@ WHERE = "operating_point"
 #: The step along directions to other states of rest; the least relative change of a temperature per
 #: unit step that is not round-off. The size of an entropy is what changes a temperature by 1e-6.
 STEP, SAME = 1e-2, 1e-9
-#: Searches for a state of rest at which the bodies held have their temperatures.
-MOST_HELD = 50
 MOST_SHOWN = 8  # states, or lanes of one
 
 
@@ -148,16 +146,10 @@ def operating_point(
     system = DrivenModule(module, p, read_inputs(module, by_name(module.INPUTS, p, u), 1.0))
     check_start(system, start)
     search = RestSearch.of(system, u, start, free)
-    rest = Rest.near(search, start)
-    for _ in range(MOST_HELD):
-        at_rest = rest.x.copy()
-        _held(module, p, at_rest, temperatures)
-        if np.allclose(at_rest, rest.x, rtol=ROUND_OFF, atol=0.0):
-            break
-        start[[*held.values()]] = at_rest[[*held.values()]]
-        rest = Rest.near(search, start)
+    body = held_of(module, temperatures or {}, held)
+    rest = body.rest(search, start)
     _refuse_open_bodies(module, p, rest.x, rest.directions, held)
-    return _described(followed(rest, search, start), parameters or {}, held)
+    return _described(followed(rest, search, start), parameters or {}, body)
 
 
 def read_constants(
@@ -201,35 +193,20 @@ def _refuse_open_bodies(
     for body, differs in zip(module.BODIES, change > SAME, strict=True):
         if np.any(differs) and body.name not in held:
             what = f"rest leaves the temperature of '{body.name}' open: it depends on the way there"
-            held = f"operating_point(..., temperatures={{'{body.name}': ...}})"
-            remedy = f"hold it: {held}, for linearize as 'at'; or simulate() until it rests"
+            call = f"operating_point(..., temperatures={{'{body.name}': ...}})"
+            remedy = f"hold it: {call}, for linearize as 'at'; or simulate() until it rests"
             raise RunError(what, f"model '{module.NAME}'", remedy=remedy)
 
 
-def _isothermal(
-    module: GeneratedModule, p: Any, x: FloatArray, jacobian: FloatArray, held: Mapping[str, int]
-) -> FloatArray:
-    """Return the Jacobian (n, n) where the entropies of held bodies keep their temperatures."""
-    bodies, rows = [record.name for record in module.BODIES], [*held.values()]
-    step = 1e-6 * np.maximum(np.abs(x), 1.0)
-    ahead, behind = (module.temperatures(x[:, None] + np.diag(s), p) for s in (step, -step))
-    change = ((ahead - behind) / (2 * step))[[bodies.index(name) for name in held]]
-    entropies = -np.linalg.solve(change[:, rows], change)  # (held, n)
-    return np.asarray(jacobian + jacobian[:, rows] @ entropies)
-
-
-def _described(
-    rest: Rest, parameters: Mapping[str, LaneValue], held: Mapping[str, int]
-) -> OperatingPoint:
+def _described(rest: Rest, parameters: Mapping[str, LaneValue], held: Held) -> OperatingPoint:
     search, x, open_ = rest.search, rest.x, rest.directions.any(axis=1)
     module, p, u = search.module, search.system.parameters, search.u
     temperatures = by_name(module.BODIES, p, module.temperatures(x, p))
     rates = module.rhs(x, u, p)
-    holding = {}
-    for name in held:
-        body = [record.name for record in module.BODIES].index(name)
-        holding[name] = -temperatures[name] * float(rates[entropy_row(module, p, x, body)])
-    jacobian = _isothermal(module, p, x, search.jacobian(x), held)
+    names = [module.BODIES[body].name for body in held.bodies]
+    given = zip(names, held.entropies, strict=True)
+    holding = {name: -temperatures[name] * float(rates[row]) for name, row in given}
+    jacobian = held.jacobian(module, p, x, search.jacobian(x))
     eigenvalues = np.linalg.eigvals(jacobian[np.ix_(search.free, search.free)])
     margin = ROUND_OFF * float(np.max(np.abs(eigenvalues), initial=0.0))
     y = np.asarray(module.outputs(x, u, p))

@@ -21,6 +21,7 @@ from piezo_sym.errors import RunError, listing
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.guard import LIMIT, broken, place, remedies, stop_rows
 from piezo_sym.run.module import GeneratedModule, by_name, row_name
+from piezo_sym.run.parameters import temperature_slopes
 from piezo_sym.run.system import DrivenModule
 
 MOST_STEPS, MOST_MOVES = 400, 40
@@ -193,12 +194,11 @@ class RestSearch:
 
     def heating_sizes(self, x: FloatArray) -> FloatArray:
         """Return the change of each state (n,) that changes a temperature by `COUNTS`, else 0."""
-        step = 1e-6 * np.maximum(np.abs(x), 1.0)
         with np.errstate(all="ignore"):
             temperatures = self.module.temperatures(x, self.system.parameters)[:, None]
-            changed = self.module.temperatures(x[:, None] + np.diag(step), self.system.parameters)
-            change = np.max(np.abs(changed / temperatures - 1.0), axis=0, initial=0.0)
-            size = COUNTS * step / change
+            slopes = temperature_slopes(self.module, self.system.parameters, x) / temperatures
+            change = np.max(np.abs(slopes), axis=0, initial=0.0)
+            size = COUNTS / change
         return np.asarray(np.where(change > 0, size, 0.0), dtype=float)
 
     def _contracts(

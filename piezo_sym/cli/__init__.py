@@ -19,12 +19,11 @@ from piezo_sym.cli.show import show
 from piezo_sym.cli.simulate import simulate
 from piezo_sym.cli.verify import verify
 from piezo_sym.errors import PiezoError, legible
+from piezo_sym.interrupts import STOPPED
 
 #: The exception typer raises for a wrong command line; its module differs between versions.
 CommandError: Any = typer.BadParameter.__mro__[2]
 
-#: Exit code of a command that the user stopped (Ctrl-C), as in shells.
-STOPPED = 130
 #: Exit code after the reader has closed the pipe, as in typer and rich.
 CLOSED = 1
 

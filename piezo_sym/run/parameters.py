@@ -38,6 +38,8 @@ SAMPLES = 1001
 MOST_LANES = 10_000_000
 #: A run of more steps would take days, and they would be shorter than round-off.
 MOST_STEPS = 1e11
+#: The greatest relative change of a temperature that is small; how often a step is shortened.
+LARGE, SHORTER = 1e-4, 300
 
 
 def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> Any:
@@ -219,10 +221,31 @@ def set_temperature(
 
 
 def entropy_row(module: GeneratedModule, p: Any, x: FloatArray, body: int) -> int:
-    """Return the row of x (n,) that changes a body's temperature most, by equal relative steps."""
+    """Return the row of x (n,) that is an entropy and changes a body's temperature most."""
+    size = np.maximum(np.abs(x), 1.0)
+    change = np.abs(temperature_slopes(module, p, x)[body]) * size
+    for record, at in zip(module.STATES, rows(module.STATES, p), strict=True):
+        change[at] = change[at] if record.unit == "J/K" else -1.0
+    return int(np.argmax(change))
+
+
+def temperature_slopes(module: GeneratedModule, p: Any, x: FloatArray) -> FloatArray:
+    """Return dT/dx (bodies, n) of each body's temperature, by central differences.
+
+    A capacity may be so small that a step of 1e-6 J/K is no small one: each step changes no
+    temperature by more than a part of 1e-4.
+    """
     step = 1e-6 * np.maximum(np.abs(x), 1.0)
-    changed = module.temperatures(x[:, None] + np.diag(step), p)[body]
-    return int(np.argmax(np.abs(changed - module.temperatures(x, p)[body])))
+    with np.errstate(all="ignore"):
+        here = np.asarray(module.temperatures(x, p))[:, None]
+        for _ in range(SHORTER):
+            ends = [module.temperatures(x[:, None] + np.diag(s), p) for s in (step, -step)]
+            parts = np.max([np.abs(end / here - 1) for end in ends], axis=(0, 1), initial=0.0)
+            large = ~(parts <= LARGE)
+            if not large.any():
+                break
+            step = np.where(large, step / 10, step)
+    return np.asarray((ends[0] - ends[1]) / (2 * step))
 
 
 def _entropy_at(

@@ -8,7 +8,7 @@ says which condition of the domain the state violates, when, and with which valu
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
@@ -67,6 +67,42 @@ class Request:
 
 
 @final
+@dataclass(eq=False)
+class _Passes:
+    """Runs from the same state with other samples.
+
+    Attributes
+    ----------
+    failed : the error of each that failed, after it had reached a sample.
+    work : of the last one.
+    first : what the first one reached: times, and the run there.
+    """
+
+    planned: PlannedRun
+    failed: list[RunError] = field(default_factory=list)
+    work: dict[str, object] = field(default_factory=dict)
+    first: tuple[FloatArray, Trajectory] | None = None
+
+    def run(self, times: FloatArray, ended: Ended | None) -> tuple[FloatArray, Trajectory]:
+        """Return the given times that a run reaches, and the run there."""
+        try:
+            trajectory, attrs = self.planned.run(times, ended)
+        except RunError as error:
+            if error.reached is None or not error.reached[0].size:
+                raise
+            self.failed.append(error)
+            times, trajectory = error.reached
+        except KeyboardInterrupt as stopped:
+            self.first = self.first or vars(stopped).get("reached")
+            raise
+        else:
+            self.work.update(attrs)
+        found = trajectory.reached(times)
+        self.first = self.first or found
+        return found
+
+
+@final
 @dataclass(frozen=True)
 class PlannedRun:
     """A run from the state x (n,)."""
@@ -111,32 +147,14 @@ class PlannedRun:
         return to_dataset(self.system, times, trajectory, attrs, outputs)
 
     def _dataset_with_events(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
-        failed: list[RunError] = []
-        work: dict[str, object] = {}
-        first: list[tuple[FloatArray, Trajectory]] = []
-
-        def run(times: FloatArray, ended: Ended | None) -> tuple[FloatArray, Trajectory]:
-            try:
-                trajectory, attrs = self.run(times, ended)
-            except RunError as error:
-                if error.reached is None or not error.reached[0].size:
-                    raise
-                failed.append(error)
-                times, trajectory = error.reached
-            except KeyboardInterrupt as stopped:
-                first.extend([vars(stopped)["reached"]] if "reached" in vars(stopped) else [])
-                raise
-            else:
-                work.update(attrs)
-            first.append(trajectory.reached(times))
-            return first[-1]
-
+        passes = _Passes(self)
         try:
-            located = locate(self.system, watched, samples, run)
+            located = locate(self.system, watched, samples, passes.run)
         except KeyboardInterrupt as stopped:
-            if first:
-                vars(stopped)["reached"] = self._sampled(*first[0], samples, watched)
+            if passes.first:
+                vars(stopped)["reached"] = self._sampled(*passes.first, samples, watched)
             raise
+        failed, work = passes.failed, passes.work
         ends, kept = located.end is None and bool(failed), samples
         if ends:
             work["stopped"] = str(failed[0])
@@ -144,7 +162,7 @@ class PlannedRun:
             kept = np.append(samples[samples < located.end], located.end)
             work["stopped"] = f"{watched.condition} at t = {located.end:.9g} s"
         at = np.unique(np.concatenate([kept, *located.times.values()]))
-        times, seen = run(at, None if located.end is None else at_last(at))
+        times, seen = passes.run(at, None if located.end is None else at_last(at))
         kept = np.union1d(kept[kept <= times[-1]], times[-1:]) if ends else kept
         dataset = self._dataset_of(kept, seen.at(np.searchsorted(times, kept)), work)
         dataset = dataset.assign(dict(event_variables(self.system, located, times, seen)))

@@ -30,8 +30,9 @@ OTHERWISE = re.compile(  # t (ms), t/ms
 )
 #: What stands between groups of digits: 1'000.
 GROUPS = re.compile(r"(?<=\d)[\s'_\N{RIGHT SINGLE QUOTATION MARK}](?=\d{3})")
-#: A number with a comma in place of the point: 0,5 or 12,25, but not 1,234.
-DECIMAL_COMMA = re.compile(r"(?:^|[;\t])\s*[-+]?(?:0*,|\d+,(?!\d{3}(?:\D|$)))\d")
+#: A number with a comma in place of the point; one that may be meant as thousands, 12,345.
+DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d*([eE][-+]?\d+)?")
+THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
 LEAVE_OUT = "delete the line: samples are joined by straight lines"
 AT_ENTRY = re.compile(r"at entry (\d+)")
 #: Endings of names that are meant as units.
@@ -46,7 +47,8 @@ def samples_from_csv(
     A header such as ``t [ms],V_in [V]``, ``t (ms)`` or ``t/ms`` gives the units: times and values
     are converted to SI, and a run refuses values whose dimension is not that of its input. Without
     units, times are in s, and values in the SI unit of the input. A time given twice is a jump.
-    Between semicolons or tabs numbers may have decimal commas.
+    Between semicolons or tabs numbers may have decimal commas, though not 1,234 alone, which may be
+    meant as a thousand.
 
     Parameters
     ----------
@@ -142,12 +144,14 @@ def _header_fault(names: Sequence[str]) -> tuple[str, str]:
 
 def _name_and_unit(text: str) -> tuple[str, str]:
     """Return the name and the unit in a header: t [ms]; t (ms) or t/ms, where ms is a unit."""
+    from piezo_sym.expressions.units import ASCII
+
     if match := HEADER.fullmatch(text):
-        return match["name"], match["unit"].strip()
+        return match["name"], match["unit"].strip().translate(ASCII)
     if match := OTHERWISE.fullmatch(text):
         unit = (match["unit"] or match["over"]).strip()
         if _is_unit(unit):
-            return match["name"], unit
+            return match["name"], unit.translate(ASCII)
     return text, ""
 
 
@@ -176,33 +180,38 @@ def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
 
     with _open(path) as (header, delimiter, rows), warnings.catch_warnings():
         warnings.simplefilter("error")
+        sign = _decimal_sign(path, delimiter, (t, x))
         with suppress(ValueError, Warning):  # the loop below finds the place of the error
             with path.open(encoding="utf-8-sig") as lines:  # pandas drops cells without header
                 if any(line.count(delimiter) >= len(header) for line in lines):
                     raise ValueError("cells without header")
             how: Any = {"index_col": False, "dtype": float, "na_filter": False, "usecols": [t, x]}
             how |= {"sep": delimiter, "skipinitialspace": True, "encoding": "utf-8-sig"}
-            how |= {"decimal": "," if delimiter != "," and _has_decimal_commas(path) else "."}
+            how |= {"decimal": sign}
             table = pandas.read_csv(path, **how)
             both = table.to_numpy()[:, [0, 1] if t < x else [1, 0]]
             if np.isfinite(both).all():
                 return both[:, 0], both[:, 1]
         numbered = ((line, row) for line, row in enumerate(rows, start=2) if row)
-        cells = (_cell(row, n, path, line, header) for line, row in numbered for n in (t, x))
+        cells = (_cell(row, n, path, line, header, sign) for line, row in numbered for n in (t, x))
         both = np.fromiter(cells, dtype=float).reshape(-1, 2)
         return both[:, 0], both[:, 1]
 
 
-def _has_decimal_commas(path: Path) -> bool:
-    """Return whether a cell below the header has a comma that groups no thousands."""
+def _decimal_sign(path: Path, delimiter: str, columns: Collection[int]) -> str:
+    """Return the decimal sign of columns: a comma if a cell has one that groups no thousands."""
     with path.open(encoding="utf-8-sig") as lines:
         next(lines)
-        return any(DECIMAL_COMMA.search(line) for line in lines)
+        for cells in (line.split(delimiter) for line in lines if delimiter != "," and "," in line):
+            for cell in (cells[n].strip(' "\n') for n in columns if n < len(cells)):
+                if DECIMAL_COMMA.fullmatch(cell) and not THOUSANDS.fullmatch(cell):
+                    return ","
+    return "."
 
 
 def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[float, str]:
     """Return the factor of a column's unit to SI, and its SI unit; `expected` is a like unit."""
-    from piezo_sym.expressions.units import ASCII, parse_unit
+    from piezo_sym.expressions.units import parse_unit
 
     name, text = header
     if not text:
@@ -210,7 +219,7 @@ def _factor(header: tuple[str, str], where: str, expected: str = "") -> tuple[fl
     if text in CELSIUS and not expected:
         return 1.0, "K"
     try:
-        unit = parse_unit(text.translate(ASCII), where)
+        unit = parse_unit(text, where)
     except PiezoError as error:
         raise UsageError(error.what, where, error.expected, error.remedy) from error
     if expected and unit.dimension != parse_unit(expected).dimension:
@@ -252,7 +261,7 @@ def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> i
 
 
 def _cell(
-    row: Sequence[str], n: int, path: Path, line: int, header: Sequence[tuple[str, str]]
+    row: Sequence[str], n: int, path: Path, line: int, header: Sequence[tuple[str, str]], sign: str
 ) -> float:
     """Return cell n of a row as a number; raise `FileError` otherwise."""
     text = row[n].strip() if n < len(row) else ""
@@ -262,11 +271,13 @@ def _cell(
         raise FileError(f"has {len(row)} cells", where, f"{len(header)}", remedy)
     column = f" (column {quote(header[n][0])})"
     try:
-        value = float(text.replace("_", "x"))  # 1_0 is a number only in Python
+        plain = text.replace(".", "x").replace(",", ".") if sign == "," else text
+        value = float(plain.replace("_", "x"))  # 1_0 is a number only in Python
     except ValueError as cause:
         what = f"{quote(text)} is not a number{column}"
         remedy = "units go into the header: t [ms]" if line == 2 and text[:1].isalpha() else ""
         remedy = "write decimals with a point" if _is_number(text.replace(",", ".")) else remedy
+        remedy = "write all decimals with one sign" * (sign == "," and _is_number(text)) or remedy
         remedy = f"delete lines that begin with '{text[0]}'" if text[:1] in COMMENTS else remedy
         plain = GROUPS.sub("", text)
         remedy = f"write {plain}" if plain != text and _is_number(plain) else remedy

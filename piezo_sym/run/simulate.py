@@ -128,7 +128,7 @@ def simulate(
         changes between neighbouring times are not seen. Not with `step`.
     stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, with a sample
         there; the attribute `stopped` says when.
-    outputs : "all", or a list such as ``["spring", "damper.heat"]``: quantities of elements beside
+    outputs : "all", a name, or a list such as ``["spring", "damper.heat"]``: of elements, beside
         the rest, named ``<element>.effort``, `.flow`, `.power` (into the element: of a source, the
         negative of what it supplies), `.energy` of what stores and `.heat` of what dissipates it.
         Couplings have `.effort_1` ... `.flow_2`, and the power from branch 1 to 2; a storage,
@@ -165,8 +165,9 @@ def simulate(
     EngineError : `step` or method='discrete_gradient' was asked for, and there is no engine.
     RunError : the state leaves the domain, at t = 0, a sample or an accepted step; or the solver
         cannot go on. The message says when, and with which values; its `partial`, and that of a
-        `KeyboardInterrupt`, is the Dataset until then: its last sample is the end of the last step,
-        from which another run can go on; that of a `RunError` has the events until then.
+        `KeyboardInterrupt`, is the Dataset until then, or until shortly before it stops: its last
+        sample, as a rule the end of the last step, is one from which another run can go on; that of
+        a `RunError` has the events until then.
     """
     checked(module)
     if progress is not None and not callable(progress):

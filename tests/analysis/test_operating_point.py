@@ -316,3 +316,29 @@ def test_what_is_held_has_no_open_temperature_where_history_decides(tmp_path: Pa
     found = operating_point(tmp_path / "held.toml", temperatures={"body": 340.0})
     assert found.temperatures["body"] == pytest.approx(340, rel=1e-13)
     assert {"z", "q"} <= {*found.undetermined}
+
+
+SMALL = Path(__file__).parent / "specs" / "small_stage.toml"
+
+
+@pytest.mark.parametrize("c", [1e-4, 1e-7, 1e-8])
+def test_however_small_the_capacity_the_stiffness_is_that_at_constant_temperature(c: float) -> None:
+    """U = k q**2/2 + c h (1 + al q/g): T = h (1 + al q/g), F = k q + c h al/g."""
+    k, g, m, T, ratio = 1e6, 1e-6, 1e-6, 310.0, float(np.sqrt(c / 1e-7))
+    al = 0.1 / ratio
+    options = {"parameters": {"c": c, "al": al}, "inputs": {"F": 8.0 * ratio}}
+    found = operating_point(SMALL, temperatures={"body": T}, **options)
+    q = found.initial["q"]
+    assert found.temperatures["body"] == pytest.approx(T, rel=1e-12)
+    slope = al / g / (1 + al * q / g)
+    stiffness = k - c * T * slope**2
+    assert abs(found.eigenvalues[0]) ** 2 * m == pytest.approx(stiffness, rel=1e-6)
+
+
+def test_the_greatest_temperature_at_rest_is_approached_and_not_passed() -> None:
+    """With b = 0.02/K no state of rest is warmer than 330.76963 K."""
+    soft = {"b": 0.02}
+    found = operating_point(SOFTENING, parameters=soft, temperatures={"body": 330.7686})
+    assert found.temperatures["body"] == pytest.approx(330.7686, rel=1e-11)
+    with pytest.raises(RunError, match="no state of rest is found"):
+        operating_point(SOFTENING, parameters=soft, temperatures={"body": 330.8})

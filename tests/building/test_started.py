@@ -1,14 +1,17 @@
 """Processes that are started look for modules where this one does, and nowhere else."""
 
 import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
 from piezo_sym.__main__ import start_examiner
 from piezo_sym.modules import module_of
+from piezo_sym.spec.source import find
 
 ROOT = Path(__file__).parents[2]
 STRETCHED = """
@@ -83,12 +86,43 @@ def test_a_run_starts_the_process_that_proves_if_its_spec_is_not_known(tmp_path,
     assert starts_it(words, starts)
 
 
-@pytest.mark.parametrize("text", [None, "[model", "model = 1", "[model]\nname = 2"])
-def test_what_is_no_spec_is_left_to_the_command(text, tmp_path):
+@pytest.mark.parametrize("text", [None, "[model", "\udcff"])
+def test_what_cannot_be_read_is_left_to_the_command(text, tmp_path, starts):
     path = tmp_path / "no.toml"
     if text:
-        path.write_text(text)
-    start_examiner(["simulate", str(path)])
+        path.write_bytes(text.encode(errors="surrogateescape"))
+    assert not starts_it(["simulate", str(path)], starts)
+
+
+def test_a_pipe_is_left_to_the_command(tmp_path, starts):
+    """It can be read once."""
+    os.mkfifo(tmp_path / "pipe.toml")
+    assert not starts_it(["simulate", str(tmp_path / "pipe.toml")], starts)
+
+
+def test_a_shipped_spec_is_known_by_its_path(starts):
+    assert not starts_it(["simulate", str(find("oscillator"))], starts)
+
+
+@pytest.mark.parametrize("seconds", [0.05, 0.2])
+def test_a_command_that_is_stopped_before_it_begins_says_nothing_of_python(seconds, tmp_path):
+    (tmp_path / "new.toml").write_text(STRETCHED.replace("k*cosh", "k/3*cosh"))
+    words = [sys.executable, "-m", "piezo_sym", "verify", "new.toml"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(words, cwd=tmp_path, env=environment, **pipes) as command:
+        time.sleep(seconds)
+        command.send_signal(signal.SIGTERM)
+        _, said = command.communicate()
+    assert "Traceback" not in said or seconds < 0.1  # while Python itself starts
+    assert command.returncode in (130, -signal.SIGTERM)
+
+
+def test_a_command_without_a_stdout_has_its_exit_code():
+    words = f"{sys.executable} -P -m piezo_sym kinds spring >&-"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(words, shell=True, env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize(

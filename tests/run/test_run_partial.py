@@ -7,6 +7,8 @@ import pytest
 
 from piezo_sym import load, simulate, sine
 from piezo_sym.errors import RunError
+from piezo_sym.expressions.exact_eval import evaluate
+from piezo_sym.run import events
 from piezo_sym.spec.source import find
 
 DRIVE = {"V_in": sine(100, 100)}
@@ -100,6 +102,23 @@ def test_an_interrupted_run_ends_before_it_stops(calls):
     assert np.all(partial.T_body <= 300)
     assert 0.01 < partial.time[-1] < 0.0306
     assert np.isin(partial.time[:-1], times).all()
+    assert partial.attrs["stopped"] == "stopped by the user"
+
+
+def test_an_interrupt_between_two_passes_keeps_what_the_first_has_reached(monkeypatch):
+    calls = []
+
+    def interrupted(*given):
+        calls.append(given)
+        if len(calls) == 3000:
+            raise KeyboardInterrupt
+        return evaluate(*given)
+
+    monkeypatch.setattr(events, "evaluate", interrupted)
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        simulate("piezo_stack", inputs=DRIVE, duration=0.5, times=2001, stop="T_body > 1000")
+    partial = stopped.value.partial
+    assert partial.sizes["time"] == 2001
     assert partial.attrs["stopped"] == "stopped by the user"
 
 
