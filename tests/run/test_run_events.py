@@ -56,7 +56,7 @@ def test_a_run_stops_where_a_condition_first_holds():
     assert np.abs(run.energy_residual).max() < 1e-12 * float(run.energy[0])
 
 
-@pytest.mark.parametrize("options", [{}, {"method": "LSODA"}])
+@pytest.mark.parametrize("options", [{}, pytest.param({"method": "LSODA"}, marks=pytest.mark.long)])
 def test_a_run_ends_soon_after_it_stops(options):
     """However long it might have gone on, with the same states until then."""
     run = {"inputs": DRIVE, "stop": "T_body > 299", "times": np.linspace(0, 0.02, 41), **options}

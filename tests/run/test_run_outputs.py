@@ -103,6 +103,7 @@ def test_units_texts_and_lanes(run):
     assert run["supply.power"].attrs["long_name"] == "power into voltage_source 'supply'"
 
 
+@pytest.mark.long
 def test_joined_stores_have_theirs():
     run = simulate(NETWORKS / "specs" / "rigid_couplings.toml", duration=1.0, outputs=["second"])
     v = run["second.flow"]
