@@ -24,7 +24,7 @@ from piezo_sym.run.collocation import Ended, Later
 from piezo_sym.run.dataset import Evaluation, Trajectory, attributes
 from piezo_sym.run.module import rows
 from piezo_sym.run.system import DrivenModule
-from piezo_sym.run.watched import Watched, quantity_names
+from piezo_sym.run.watched import Watched, quantities
 
 #: Returns the given times that the run reaches, and the run there.
 Sampler: TypeAlias = Callable[[FloatArray, Ended | None], tuple[FloatArray, Trajectory]]
@@ -60,7 +60,7 @@ def _quantity_values(
     ]
     values = [*x, *u, *module.outputs(x, u, p), *module.temperatures(x, p), *fixed]
     values += [*module.elements(x, u, p)] if any("." in name for name in wanted) else []
-    named = zip(quantity_names(system), values, strict=False)
+    named = zip(quantities(system), values, strict=False)
     return {n: np.broadcast_to(row, x.shape[1]).tolist() for n, row in named if n in wanted}
 
 

@@ -5,17 +5,19 @@ Input: texts in the language of laws over states, inputs, `y_<port>`, `T_<body>`
 """
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import pairwise
 from typing import final
 
-from piezo_sym.errors import PiezoError, UsageError, nearest, quote
+from piezo_sym.errors import PiezoError, UsageError, listing, nearest, quote
+from piezo_sym.expressions.dimensions import dimension
 from piezo_sym.expressions.incomplete import CONSTANTS, OR, conditions_of
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import ZERO, Add, Call, Expr, Mul, Neg, Num, names, rename
+from piezo_sym.expressions.tree import ZERO, Add, Call, Expr, Mul, Neg, Num, names, rename, walk
 from piezo_sym.run.elements import element_remedy
 from piezo_sym.run.module import row_names
 from piezo_sym.run.system import DrivenModule
@@ -61,7 +63,7 @@ def read_watched(system: DrivenModule, events: object, stop: object, step: objec
         raise UsageError(what, "simulate.step", "rtol", "leave out step, or events and stop")
     if not given and stop is None:
         return Watched({}, None)
-    known = quantity_names(system)
+    known = quantities(system)
     laws = {}
     for name, text in given.items():
         where = f"simulate.events.{name}"
@@ -71,13 +73,13 @@ def read_watched(system: DrivenModule, events: object, stop: object, step: objec
             what = f"{quote(name)} cannot name an event{why}"
             raise UsageError(what, "simulate.events", "a new name of letters, digits and _")
         law = _parsed(parse_law, text, where, '"q - 1e-3"', "{}")
-        laws[name] = _check_names(law, known, where)
+        laws[name] = _checked(law, known, where)
     if stop is None:
         return Watched(laws, None)
     where = "simulate.stop"
     margin = _parsed(_to_round_off, stop, where, '"T_body > 350"', "{} > 0")
     closed = "=" in parse_condition(_plain(str(stop)), where).op
-    return Watched(laws, _check_names(margin, known, where), str(stop), closed)
+    return Watched(laws, _checked(margin, known, where), str(stop), closed)
 
 
 def _plain(text: str) -> str:
@@ -145,7 +147,8 @@ def _in_si(text: str, where: str) -> str:
     return f"write numbers in SI: {value:g} for {found[0]}"
 
 
-def _check_names(tree: Expr, words: Sequence[str], where: str) -> Expr:
+def _checked(tree: Expr, words: Mapping[str, str], where: str) -> Expr:
+    """Return a tree whose names are known, and whose sums have terms of equal units."""
     for name in names(tree):
         if name not in words:
             dotted = tuple(word for word in words if "." in word)
@@ -155,17 +158,38 @@ def _check_names(tree: Expr, words: Sequence[str], where: str) -> Expr:
             what = f"events and stop know no {quote(name)}"
             expected = f"{KNOWN}, or a quantity of an element, such as '{dotted[0]}'"
             raise UsageError(what, where, expected, remedy)
+    _check_sums(tree, words, where)
     return tree
 
 
-def quantity_names(system: DrivenModule) -> list[str]:
-    """Return the names of all that may be watched, in the order of their values."""
+def _check_sums(tree: Expr, units: Mapping[str, str], where: str) -> None:
+    """Refuse sums and comparisons of quantities of different units; a number may have any."""
+    from piezo_sym.expressions.units import parse_unit
+
+    known = {name: parse_unit(units[name]).dimension for name in names(tree)}
+    for total in (part for part in walk(tree) if isinstance(part, Add)):
+        terms = [t for t in total.terms if not any(isinstance(part, Num) for part in walk(t))]
+        for one, other in pairwise(terms):
+            if dimension(one, known) != dimension(other, known):
+                told = (f"{name} in {units[name]}" for name in (*names(one), *names(other)))
+                what = f"adds or compares what has different units: {listing(dict.fromkeys(told))}"
+                raise UsageError(what, where, "equal units")
+
+
+def quantities(system: DrivenModule) -> dict[str, str]:
+    """Return the unit of all that may be watched by name, in the order of its values."""
     module, p = system.module, system.parameters
-    return [
-        *row_names(module.STATES, p),
-        *(record.name for record in module.INPUTS),
-        *(f"y_{record.name}" for record in module.OUTPUTS),
-        *(f"T_{record.name}" for record in module.BODIES),
-        *row_names(module.PARAMETERS, p),
-        *row_names(module.ELEMENTS, p),
-    ]
+    tables = (
+        (module.STATES, ""),
+        (module.INPUTS, ""),
+        (module.OUTPUTS, "y_"),
+        (module.BODIES, "T_"),
+        (module.PARAMETERS, ""),
+        (module.ELEMENTS, ""),
+    )
+    return {
+        f"{prefix}{name}": record.unit
+        for records, prefix in tables
+        for record in records
+        for name in row_names([record], p)
+    }

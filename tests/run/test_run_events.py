@@ -133,6 +133,33 @@ def test_what_cannot_be_looked_for_is_one_line(options, said):
     assert said in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"events": {"mixed": "q - T_body"}}, "simulate.events.mixed: adds or compares what has"),
+        ({"stop": "q > T_body"}, "different units: q in m, T_body in K; expected equal units"),
+        ({"stop": "min(q - T_body, p) > 0"}, "different units: q in m, T_body in K"),
+        ({"events": {"mixed": "damper.power - d*y_load"}}, "damper.power in W, d in "),
+    ],
+)
+def test_quantities_of_different_units_are_not_compared(options, said):
+    with pytest.raises(UsageError, match=re.escape(said)):
+        simulate("piezo_stack", duration=1e-3, **options)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "q - 1e-3",
+        "damper.power - d*y_load**2",
+        "spring.effort - k*q + 0.1*T_body",
+        "1000*q - T_body",
+    ],
+)
+def test_a_number_may_have_any_unit(text):
+    simulate("piezo_stack", duration=1e-4, times=2, events={"fine": text})
+
+
 def test_a_run_starts_at_another_time():
     late = simulate("piezo_stack", inputs=DRIVE, duration=0.01, t0=0.0025, rtol=1e-9)
     assert late.time.values[[0, -1]].tolist() == [0.0025, 0.0125]
