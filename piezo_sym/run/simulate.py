@@ -127,7 +127,8 @@ def simulate(
         They are evaluated at the samples and four times per step, 1,000 to 20,000 times in all: two
         changes between neighbouring times are not seen. Not with `step`.
     stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, with a sample
-        there; the attribute `stopped` says when.
+        there; the attribute `stopped` says when. The samples are those of `times` until then, so
+        give more of them where `duration` is much longer than what you expect.
     outputs : "all", a name, or a list such as ``["spring", "damper.heat"]``: of elements, beside
         the rest, named ``<element>.effort``, `.flow`, `.power` (into the element: of a source, the
         negative of what it supplies), `.energy` of what stores and `.heat` of what dissipates it.
