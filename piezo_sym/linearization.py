@@ -10,7 +10,7 @@ by the derivatives of the generated Jacobian, extended to inputs and outputs.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, final
 
@@ -29,7 +29,7 @@ from piezo_sym.errors import RunError, UsageError, quote
 from piezo_sym.files import temporary_folder
 from piezo_sym.module_cache import write_module
 from piezo_sym.modules import module_of
-from piezo_sym.run.checks import FloatArray, calling, known_keys
+from piezo_sym.run.checks import FloatArray, calling, checked_call, known_keys
 from piezo_sym.run.guard import stop_rows
 from piezo_sym.run.module import GeneratedModule, row_names
 from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
@@ -90,6 +90,7 @@ class LinearModel:
         return f"LinearModel({shown})"
 
 
+@partial(checked_call, name="linearize")
 @calling("linearize", initial="at")
 def linearize(
     model: str | Path | Model,

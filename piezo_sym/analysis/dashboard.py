@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 
 from piezo_sym.analysis.style import COLOURS, DASHES, LABEL, SMALL, dress
 from piezo_sym.errors import UsageError, listing, one_line, quote
-from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.checks import FloatArray, checked_call
 from piezo_sym.run.dataset import CONDUCTED
 from piezo_sym.run.events import EVENT
 
@@ -45,6 +45,7 @@ RESIDUALS = ("energy_residual", "entropy_residual")
 SUMS = ("supplied_", "heat_", "produced_", "entropy_exchanged_")
 
 
+@partial(checked_call, name="plot")
 def plot(run: xarray.Dataset) -> Figure:
     """Return a dashboard of a run.
 

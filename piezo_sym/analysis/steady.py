@@ -100,8 +100,9 @@ def periodic_steady_state(
     """Return the periodic steady state that a run from its initial state approaches.
 
     That is the first zero of the drift in its direction at the start, once all other states have
-    settled. Where the temperature is not the slowest motion, compare with a run. A state that
-    drifts, and on which no rate depends, such as a free position, keeps its initial value; a
+    settled. Where the temperature is not the slowest motion, compare with a run, and so with stops
+    or other hysteresis, which leave many periodic states: the past decides between them. A state
+    that drifts, and on which no rate depends, such as a free position, keeps its initial value; a
     `SteadyWarning` says how far it drifts in a period.
 
     >>> from piezo_sym import periodic_steady_state, sine

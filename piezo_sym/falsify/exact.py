@@ -15,9 +15,9 @@ from typing import Any, final
 from flint import arb, ctx, fmpq
 
 from piezo_sym.expressions.exact_eval import TooCloseError, evaluated, exact, holds
+from piezo_sym.expressions.floats import Row
 from piezo_sym.expressions.tree import Cmp, Expr, LaneSum, names
 from piezo_sym.falsify.claims import Claim
-from piezo_sym.falsify.floats import Row
 from piezo_sym.falsify.probe import Probe
 from piezo_sym.falsify.space import Array, Space
 

@@ -19,6 +19,7 @@ from piezo_sym.codegen.functions import functions_of
 from piezo_sym.codegen.program import bank_of
 from piezo_sym.codegen.quantities import Quantities, quantities_of
 from piezo_sym.expressions.calculus import add, derivative, kinks, neg
+from piezo_sym.expressions.floats import Row
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ONE,
@@ -37,7 +38,6 @@ from piezo_sym.expressions.tree import (
     walk,
 )
 from piezo_sym.expressions.units import parse_unit
-from piezo_sym.falsify.floats import Row
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
 from piezo_sym.spec.elements.ports import (

@@ -16,9 +16,9 @@ from typing import Any, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
+from piezo_sym.expressions.floats import Approx, Floats
 from piezo_sym.expressions.tree import COMPARED, Cmp, Expr, Num, Sym
 from piezo_sym.expressions.units import parse_unit
-from piezo_sym.falsify.floats import Approx, Floats
 from piezo_sym.falsify.probe import RESULTS, Probe
 from piezo_sym.spec.tables import greater
 

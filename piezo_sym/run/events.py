@@ -8,16 +8,16 @@ it is sampled at the user's times, until the first of them at which it stops; th
 step, and again where signs change.  None of these runs goes on for long behind what is looked for.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import suppress
+import warnings
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Self, TypeAlias, final
 
 import numpy as np
 
-from piezo_sym.errors import UsageError, quote
-from piezo_sym.expressions.exact_eval import evaluate
+from piezo_sym.errors import InputWarning, UsageError, quote
+from piezo_sym.expressions.floats import Floats
 from piezo_sym.expressions.tree import Expr, names
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import Ended, Later
@@ -28,8 +28,9 @@ from piezo_sym.run.watched import Watched, quantities
 
 #: Returns the given times that the run reaches, and the run there.
 Sampler: TypeAlias = Callable[[FloatArray, Ended | None], tuple[FloatArray, Trajectory]]
-#: Samples to find changes of sign: per step, and the least and greatest number of them.
-PER_STEP, LEAST, MOST = 4, 1000, 20_000
+#: Samples to find changes of sign: per step, and the least number of them; the greatest is MOST, or
+#: as many as have so many NUMBERS.
+PER_STEP, LEAST, MOST, NUMBERS = 4, 1000, 20_000, 50_000_000
 #: How the description of the times of an event begins.
 EVENT = "times of event"
 #: Samples inside a bracket in one pass: around the zero of the chord, at these fractions of the
@@ -47,11 +48,9 @@ class Located:
     end: float | None
 
 
-def _quantity_values(
-    system: DrivenModule, wanted: Collection[str], trajectory: Trajectory
-) -> dict[str, list[float]]:
-    module, p = system.module, system.parameters
-    x, u = trajectory.states, trajectory.inputs
+def values_of(system: DrivenModule, tree: Expr, trajectory: Trajectory) -> FloatArray:
+    """Return the values (nt,) of an expression at the samples of a run; nan where it has none."""
+    module, p, x, u = system.module, system.parameters, trajectory.states, trajectory.inputs
     given = zip(module.PARAMETERS, rows(module.PARAMETERS, p), strict=True)
     fixed = [
         value
@@ -59,19 +58,11 @@ def _quantity_values(
         for value in np.broadcast_to(getattr(p, record.name), row.stop - row.start)
     ]
     values = [*x, *u, *module.outputs(x, u, p), *module.temperatures(x, p), *fixed]
-    values += [*module.elements(x, u, p)] if any("." in name for name in wanted) else []
-    named = zip(quantities(system), values, strict=False)
-    return {n: np.broadcast_to(row, x.shape[1]).tolist() for n, row in named if n in wanted}
-
-
-def values_of(system: DrivenModule, tree: Expr, trajectory: Trajectory) -> FloatArray:
-    """Return the values (nt,) of an expression at the samples of a run; nan where it has none."""
-    columns = _quantity_values(system, [*names(tree)], trajectory)
-    values = np.full(trajectory.states.shape[1], np.nan)
-    for k in range(values.size):
-        with suppress(ArithmeticError, ValueError):
-            values[k] = evaluate(tree, {name: column[k] for name, column in columns.items()})
-    return values
+    values += [*module.elements(x, u, p)] if any("." in name for name in names(tree)) else []
+    known = dict(zip(quantities(system), values, strict=False))
+    with np.errstate(all="ignore"):
+        found = Floats(known.get, {}, {})[tree]
+    return np.broadcast_to(np.where(found.lost, np.nan, found.value), x.shape[1:])
 
 
 def at_last(times: FloatArray) -> Ended:
@@ -128,7 +119,7 @@ def locate(system: DrivenModule, watched: Watched, samples: FloatArray, run: Sam
         rest = np.flatnonzero(times > scout.looked)
         scout.look(times[rest], seen.at(rest))
         end = min(end, scout.end)
-    even = np.linspace(start, end, min(max(PER_STEP * seen.steps, LEAST), MOST))
+    even = np.linspace(start, end, _number(seen))
     times, seen = run(np.union1d(samples[samples <= end], even), at_last(even))
     brackets: list[_Bracket] = []
     if watched.stop:
@@ -156,6 +147,15 @@ def locate(system: DrivenModule, watched: Watched, samples: FloatArray, run: Sam
     kept = [(name, t) for name, t in located if stop is None or t <= stop]
     times_of = {name: np.array([t for n, t in kept if n == name]) for name in watched.event}
     return Located(times_of, stop)
+
+
+def _number(run: Trajectory) -> int:
+    """Return at how many times to look for changes of sign in a run."""
+    most = max(MOST, NUMBERS // (len(run.states) + len(run.integrals)))
+    if most < run.steps:
+        text = f"events are looked for at {most} times in {run.steps} steps, so some may be missed"
+        warnings.warn(f"{text}; run shorter parts, or into a store", InputWarning, stacklevel=2)
+    return min(max(PER_STEP * run.steps, LEAST), most)
 
 
 def _at_edge(values: FloatArray, *, closed: bool) -> FloatArray:

@@ -124,8 +124,8 @@ def simulate(
         states, inputs, outputs and temperatures there. Expressions are texts in the language of
         laws, of states (a lane as ``phi_1``), inputs, `y_<port>`, `T_<body>`, parameters and what
         `outputs` names (of a bank ``hysteron.effort_1``), in SI.
-        They are evaluated at the samples and four times per step, 1,000 to 20,000 times in all: two
-        changes between neighbouring times are not seen. Not with `step`.
+        They are evaluated at the samples and four times per step: two changes between neighbouring
+        times are not seen. A warning says where a run has too many steps for that. Not with `step`.
     stop : a comparison, such as ``"T_body > 350"``: the run ends when it first holds, with a sample
         there; the attribute `stopped` says when. The samples are those of `times` until then, so
         give more of them where `duration` is much longer than what you expect.

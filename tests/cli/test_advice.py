@@ -9,6 +9,7 @@ from piezo_sym import (
     load,
     operating_point,
     periodic_steady_state,
+    plot,
     simulate,
     sweep,
 )
@@ -226,6 +227,11 @@ def test_a_wrong_argument_is_one_of_what_was_called(call, place):
         (
             lambda: simulate("oscillator", tend=5),
             "simulate: unknown name 'tend'; known: model, in",
+        ),
+        (lambda: plot(None, "q"), "plot: too many positional arguments; expected plot(run)"),
+        (
+            lambda: linearize("oscillator", input={}),
+            "linearize: unknown name 'input'; did you mean",
         ),
         (lambda: simulate("oscillator", input={}), "simulate: unknown name 'input'; did you mean"),
         (lambda: Stepper("oscillator", setp=1), "Stepper: unknown name 'setp'; did you mean"),

@@ -10,10 +10,10 @@ from piezo_sym.algebra.symbols import to_sympy
 from piezo_sym.codegen.numpy.style import numpy_text
 from piezo_sym.expressions.calculus import derivative
 from piezo_sym.expressions.exact_eval import evaluate, value_of
+from piezo_sym.expressions.floats import Floats
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Call, Sym
-from piezo_sym.falsify.floats import Floats
 
 POWER = Call("pow", (Sym("x"), Sym("w")))
 OF_ZERO = ("abs(x)**n", "(2*abs(x)/a)**(n + 1)", "max(x, 0)**(2*n)", "(x if x > 0 else -x)**n")

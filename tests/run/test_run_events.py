@@ -8,8 +8,8 @@ import xarray
 from scipy.optimize import brentq
 
 from piezo_sym import load, simulate, sine
-from piezo_sym.errors import RunError, UsageError
-from piezo_sym.run import streaming
+from piezo_sym.errors import InputWarning, RunError, UsageError
+from piezo_sym.run import events, streaming
 from tests.networks.test_acceptance import OSCILLATOR, TWO_BODIES
 
 DRIVE = {"V_in": sine(100, 100)}
@@ -54,6 +54,20 @@ def test_a_run_stops_where_a_condition_first_holds():
     assert run.half.values[0] < end
     assert np.all(np.diff(run.time) > 0)
     assert np.abs(run.energy_residual).max() < 1e-12 * float(run.energy[0])
+
+
+def test_a_run_of_many_steps_loses_no_event(monkeypatch):
+    """Four looks per step, however many, unless they do not fit into the memory."""
+    run = {"inputs": DRIVE, "duration": 1.0, "events": {"up": "q"}}
+    monkeypatch.setattr(events, "MOST", 100)
+    dense = simulate("piezo_stack", times=40_001, **run)
+    signs = np.sign(dense.q.values)
+    signs = signs[signs != 0]
+    assert dense.sizes["up"] == np.count_nonzero(np.diff(signs)) > 150
+    assert simulate("piezo_stack", times=2, **run).sizes["up"] == dense.sizes["up"]
+    monkeypatch.setattr(events, "NUMBERS", 0)
+    with pytest.warns(InputWarning, match="100 times in .* steps, so some may be missed"):
+        assert simulate("piezo_stack", times=2, **run).sizes["up"] < dense.sizes["up"]
 
 
 @pytest.mark.parametrize("options", [{}, pytest.param({"method": "LSODA"}, marks=pytest.mark.long)])

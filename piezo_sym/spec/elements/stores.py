@@ -173,9 +173,9 @@ def _stop_doc(sizes: tuple[Size, ...]) -> str:
     )
     return (
         f"{kinds[0].upper()}{kinds[1:]}, whose magnitude never exceeds `limit`: what would go "
-        "beyond it slips, and co-state times slip `heats` a body. Steps are exact along their own "
-        "path; `rhs` at the limit is the projected rate. The Jenkins element, the stop operator, a "
-        'cell of Maxwell-slip. It is no end stop: a spring with force = "k_c*max(q - gap, 0)" is.'
+        "beyond it slips, and co-state times slip `heats` a body. Steps are exact on their path; "
+        "`rhs` at the limit is the projected rate. The Jenkins element, a cell of Maxwell-slip. An "
+        'end stop is a spring with force = "k_c*max(q - gap, 0)", or below "-k_c*max(-q - gap, 0)".'
     )
 
 
