@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from piezo_sym.analysis.held import Held, held_of
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.analysis.settling import Rest, followed
-from piezo_sym.errors import RunError, listing
+from piezo_sym.errors import RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, calling, known_keys, number
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.inputs import read_inputs
@@ -159,6 +159,10 @@ def read_constants(
     names = [record.name for record in module.INPUTS]
     values = known_keys(given, names, where, names_elsewhere(module, "inputs"))
     default = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
+    for name, value in values.items():
+        if callable(value) or hasattr(value, "frequency"):
+            what, remedy = f"{quote(value)} varies in time", "for a period: periodic_steady_state()"
+            raise UsageError(what, f"{where}.{name}", "a constant", remedy)
     return np.array([number(values.get(name, default[name]), f"{where}.{name}") for name in names])
 
 

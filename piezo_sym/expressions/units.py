@@ -16,7 +16,7 @@ from typing import Any, final
 
 from flint import fmpz
 
-from piezo_sym.errors import SpecError, nearest, quote
+from piezo_sym.errors import SpecError, nearest, quote, similar
 from piezo_sym.expressions.dimensions import BASES
 from piezo_sym.expressions.grammar import RefusedError, parse_rule
 from piezo_sym.expressions.si_units import EXACT, PREFIXES
@@ -25,7 +25,8 @@ from piezo_sym.expressions.tree import Div, Expr, Mul, Num, Pow, Sym
 #: Names and their powers.
 Terms = list[tuple[str, Fraction]]
 
-MAX_UNIT = 60
+#: Longer words than this may be the long name of a unit, misspelt.
+MAX_UNIT, SHORT = 60, 3
 ATOM = "[A-Za-z]+"
 PLAIN = re.compile(r"[A-Za-z0-9*/^()-]+")
 #: Spellings in ASCII: of micro (two characters that look alike), ohm (two), degrees, powers.
@@ -238,7 +239,9 @@ def _meant(name: str, text: str) -> str:
     offers.insert(0, kilo if name.startswith("K") else "")
     if said := [_put(text or name, name, offer) for offer in offers if offer]:
         return f"write {', or '.join(map(quote, said))}"
-    alike = _registry().parse_unit_name(name, case_sensitive=False)  # as mHenry
+    alike = [*_registry().parse_unit_name(name, case_sensitive=False)]  # as mHenry
+    word = similar(name.lower(), UNITS)
+    alike += [("", word, "")] if len(name) > SHORT and word[:1] == name[0].lower() else []
     for prefix, root, _ in (unit for unit in alike if unit[1] in UNITS):
         symbol = str(_registry().get_symbol(prefix + root)).translate(ASCII)
         return f"did you mean {quote(symbol)}?"

@@ -267,7 +267,8 @@ def _cell(
     text = row[n].strip() if n < len(row) else ""
     where = f"{path}, line {line}"
     if any(cell.strip() for cell in row[len(header) :]):
-        remedy = "write decimals with a point, and a name for each column into the header"
+        remedy = "write decimals with a point, and a name for each column into line 1; "
+        remedy += "delete what stands above the names"
         raise FileError(f"has {len(row)} cells", where, f"{len(header)}", remedy)
     column = f" (column {quote(header[n][0])})"
     try:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from piezo_sym import load, operating_point, simulate
+from piezo_sym import load, operating_point, simulate, sine
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.spec.load import parse, starter
 from tests.networks.test_acceptance import SPECS
@@ -342,3 +342,8 @@ def test_the_greatest_temperature_at_rest_is_approached_and_not_passed() -> None
     assert found.temperatures["body"] == pytest.approx(330.7686, rel=1e-11)
     with pytest.raises(RunError, match="no state of rest is found"):
         operating_point(SOFTENING, parameters=soft, temperatures={"body": 330.8})
+
+
+def test_an_input_that_varies_is_told_what_there_is_for_it() -> None:
+    with pytest.raises(UsageError, match="varies in time; expected a constant; for a period: per"):
+        operating_point("piezo_stack", inputs={"V_in": sine(100.0, 50.0)})

@@ -223,6 +223,8 @@ def test_texts_that_are_no_units(text):
         ("KV", "unknown unit 'KV'; write 'kV', or 'K*V'"),
         ("W/Km", "unknown unit 'Km'; write 'W/km', or 'W/(K*m)'"),
         ("amps", "unknown unit 'amps'; did you mean 'A'?"),
+        ("gramm", "unknown unit 'gramm'; did you mean 'g'?"),
+        ("kgramm", "unknown unit 'kgramm'; known: m, kg, "),
     ],
 )
 def test_words_that_are_no_units(text, answer):
