@@ -25,7 +25,7 @@ from piezo_sym.run.parameters import temperature_slopes
 from piezo_sym.run.system import DrivenModule
 
 MOST_STEPS, MOST_MOVES = 400, 40
-LONGEST = 1e20  # the longest Euler step, over the first
+LONGEST = 1e30  # the longest Euler step, over the first: creep by a power law decays slowly
 GROWTH = 4.0  # of the Euler step
 CONTRACTION = 0.25  # the largest second Newton move of an Euler step, over the first
 AT_REST = 1e-9  # a move at rest, over the states' sizes

@@ -347,3 +347,11 @@ def test_the_greatest_temperature_at_rest_is_approached_and_not_passed() -> None
 def test_an_input_that_varies_is_told_what_there_is_for_it() -> None:
     with pytest.raises(UsageError, match="varies in time; expected a constant; for a period: per"):
         operating_point("piezo_stack", inputs={"V_in": sine(100.0, 50.0)})
+
+
+def test_creep_by_a_power_of_the_force_rests_though_it_never_quite_does() -> None:
+    """z' = vb (f/Fb)**3 decays as the root of time: at rest f = 0, and the spring has the load."""
+    spec = Path(__file__).parent / "specs" / "creep_of_third_power.toml"
+    found = operating_point(spec, inputs={"F": 1.0})
+    assert found.initial["q"] == pytest.approx(1.0 / 1e3, rel=1e-6)
+    assert abs(found.initial["z"]) < 1e-6 * found.initial["q"]
