@@ -44,7 +44,7 @@ def test_steady_states_come_and_go_at_the_jump(found):
     assert [state.stable for state in states(f * 1.005)] == [True]
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("part", [0.5, 1.0])
 @pytest.mark.parametrize("number", [0, 1])
 def test_points_are_steady_states(found, number, part):

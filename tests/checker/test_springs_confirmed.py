@@ -29,7 +29,7 @@ def test_laws_of_springs_are_confirmed(law):
     assert refused(text, proofs) == {}
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(("law", "old", "new"), LAWS)
 def test_another_energy_is_not_confirmed(law, old, new):
     text = SPRING.replace("LAW", law)
@@ -90,7 +90,7 @@ count = 3
 """
 
 
-@pytest.mark.some(2)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("old", "new"),
     [("", ""), ("w*sqrt", "2*w*sqrt"), ("sqrt(", "sqrt(w*w + "), ("sum(", "sum(coil, 1)*sum(")],

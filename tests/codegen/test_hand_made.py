@@ -163,6 +163,7 @@ def well(energy):
     )
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("seed", [3, *(pytest.param(n, marks=pytest.mark.long) for n in (1, 2))])
 @pytest.mark.parametrize(
     "energy", ["k*q**4/4", pytest.param("k*log(1 + q**2)", marks=pytest.mark.long)]

@@ -240,7 +240,7 @@ force = "F_c*(tanh(v/v_0) - s*tanh(v/v_s))"
 """
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(("limit", "refuted"), [("v_s < v_0", True), ("v_s >= v_0", False)])
 @pytest.mark.parametrize("small", ["", "0.5", "0.3 0.2"])
 def test_numbers_near_those_of_the_spec_refute_a_law_that_is_zero_for_simple_ones(

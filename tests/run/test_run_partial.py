@@ -84,6 +84,7 @@ def test_a_run_that_is_interrupted_keeps_what_it_has(method):
     assert partial.attrs["stopped"] == "stopped by the user"
 
 
+@pytest.mark.some(2)
 @pytest.mark.parametrize("calls", [1, 2, 4, 8])
 def test_an_interrupted_run_ends_before_it_stops(calls):
     """Wherever it is interrupted: before the time is known, or while it is located."""
@@ -156,6 +157,7 @@ def test_of_sparse_samples_an_interrupted_run_keeps_its_last_step_and_goes_on(mo
         assert np.abs(rest[name][-1] - whole[name][-1]) < 1e-3 * size, name
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("watched", [{}, {"events": {"up": "q - 1e-4"}}])
 def test_of_sparse_samples_a_run_that_fails_keeps_its_last_step(short_of_300_kelvin, watched):
     with pytest.raises(RunError, match=r"leaves the domain at t = 0\.03059") as stopped:

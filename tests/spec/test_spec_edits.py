@@ -85,6 +85,7 @@ def test_tokens_exchanged(one, other):
     load_or_one_line("".join(tokens))
 
 
+@pytest.mark.long
 @steady
 @given(st.integers(0, len(SHIPPED)), st.text(max_size=5))
 def test_letters_inserted(at, letters):

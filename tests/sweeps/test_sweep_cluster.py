@@ -13,6 +13,7 @@ OVER = {"V_in": {f: sine(100, f) for f in (50.0, 100.0)}, "L": np.linspace(1e-3,
 BASE = {"over": OVER, "duration": 0.02, "times": 3}
 
 
+@pytest.mark.long
 def test_a_killed_worker_loses_nothing(tmp_path):
     from distributed import Client, LocalCluster
 

@@ -33,6 +33,7 @@ def verdicts(stack, language, text):
     return [row.verdict for row in different(language, text, stack[1])]
 
 
+@pytest.mark.some(1)
 def test_parts_are_proved_together_and_called_once_each(stack):
     texts = stack[0]
     assert {language: verdicts(stack, language, texts[language]) for language in ("C", "step")} == {
