@@ -5,6 +5,7 @@ import signal
 import time
 
 import numpy as np
+import pytest
 import xarray
 
 from piezo_sym import sine, sweep
