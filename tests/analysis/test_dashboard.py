@@ -83,6 +83,7 @@ def test_heat_between_bodies_is_not_released_and_not_stacked():
     assert line.get_ydata()[-1] == run.heat_contact[-1]
 
 
+@pytest.mark.long
 def test_time_is_named_once_and_its_numbers_stand_under_every_column():
     figure = plot(actuator())
     assert figure.get_supxlabel() == "time [s]"
@@ -245,6 +246,7 @@ def test_several_bodies():
     assert names(panel(figure, "T_hot")) == ["T_hot", "T_cold"]
 
 
+@pytest.mark.long
 def test_a_model_without_heat_has_no_panel_for_it(module):
     from piezo_sym.run import simulate as run_module
 

@@ -494,7 +494,7 @@ state = "z"
 """
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.usefixtures("cache")
 @pytest.mark.parametrize("start", [{}, {"q": 0.01}, {"z": -0.005}])
 def test_a_stop_that_sticks_keeps_its_slip(start):

@@ -205,6 +205,7 @@ def test_what_other_sources_have_proved_is_not_kept(model, asked, monkeypatch):
     assert len(asked) == 2
 
 
+@pytest.mark.long
 def test_a_package_in_the_working_folder_is_not_that_of_the_process(tmp_path):
     (tmp_path / "piezo_sym").mkdir()
     (tmp_path / "piezo_sym" / "__init__.py").write_text("raise SystemExit('not this one')")

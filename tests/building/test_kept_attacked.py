@@ -79,6 +79,7 @@ assert module_of("oscillator").NAME == "oscillator"
     assert [*cache.rglob("modules/*/*")] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["HOME", "XDG_CACHE_HOME"])
 def test_a_cache_is_never_in_the_working_folder(name):
     code = "import sys; from piezo_sym.cli import run; sys.exit(run(['verify', 'oscillator']))"
@@ -184,6 +185,7 @@ def test_a_spec_from_a_pipe_is_simulated():
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.long
 def test_a_spec_from_a_pipe_is_rechecked(tmp_path):
     pytest.importorskip("cvc5")
     command = f"cat {ROOT}/piezo_sym/models/oscillator.toml | {sys.executable} -P -m piezo_sym"

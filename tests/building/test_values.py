@@ -109,6 +109,7 @@ body = { kind = "thermal_mass", temperature = "T_0*exp(S/c)" }
 """
 
 
+@pytest.mark.long
 def test_an_edit_of_a_value_beside_a_stop_derives_nothing(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(RUBBED)

@@ -63,6 +63,7 @@ def test_a_law_that_gives_power_is_not_confirmed(name):
     assert ("sigma", "") in found
 
 
+@pytest.mark.long
 def test_a_negative_width_in_the_domain_leaves_no_domain(tmp_path):
     free, width = mass("(a - a_1)*v"), "saturate(a, a_1) < 0"
     text = free.replace('"a_1 > 0"', f'"{width}", "a_1 < 0"').replace(

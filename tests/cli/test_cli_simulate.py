@@ -300,6 +300,7 @@ def test_a_wrong_run_is_one_line_and_exit_code_2(refused, words, message):
     assert refused(*SHORT, *words).startswith(message)
 
 
+@pytest.mark.long
 def test_a_fault_of_the_spec_has_its_name_and_one_of_an_option_has_not(refused, spec_file):
     """`verify` names the same file for the same fault."""
     path = spec_file('"d >= 0", ', "")
@@ -638,6 +639,7 @@ def test_last_values_have_the_digits_that_show_their_change(call):
     assert float(shown) - float(run.T_hot[0]) == pytest.approx(change, rel=0.01)
 
 
+@pytest.mark.long
 def test_a_start_apart_from_states_of_the_same_rate_is_said(call, spec_file):
     guide = 'between = ["tip", "wall"]\nstiffness = "k"\nstate = "x"'
     spec = spec_file(

@@ -80,6 +80,7 @@ def cells(count):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", tiers([1, 7], 1))
 def test_lanes_may_have_states_of_their_own_that_act_on_each_other(count, tmp_path):
     module = cells(count).module(tmp_path)
@@ -190,6 +191,7 @@ def test_very_long_steps_close_their_balances_or_are_halved(energy, seed, tmp_pa
     assert ran >= 3
 
 
+@pytest.mark.long
 def test_a_force_that_goes_to_zero_is_no_reason_to_halve_steps(tmp_path):
     """At rest at a length that is not zero all of it is what rounding leaves."""
     module = replace(well("k*(q - 0.1)**2/2 + k*(q - 0.1)**4"), name="rest").module(tmp_path)

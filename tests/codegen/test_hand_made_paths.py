@@ -77,7 +77,7 @@ def test_a_stop_that_is_led_follows_the_stop_operator(made, order):
     assert np.abs(run.energy_residual).max() <= 1e-12 * work + 4 * np.spacing(240.0)
 
 
-@pytest.mark.some(2)
+@pytest.mark.long
 @pytest.mark.parametrize("r", [LIMIT, 4e-3, 1.0])
 def test_a_large_cycle_costs_what_is_known(made, r):
     """4 F_c (X - F_c/k) a cycle, and nothing where the limit is not reached."""

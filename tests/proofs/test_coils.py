@@ -114,7 +114,7 @@ def test_a_coil_that_saturates_runs_as_rates_by_hand():
     assert float(np.abs(run.entropy_residual).max()) <= 1e-14
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("law", "assumed"),
     [

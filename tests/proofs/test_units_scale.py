@@ -58,7 +58,7 @@ def factor(size, scales):
     return float(np.prod([s ** float(p) for p, s in zip(size, scales, strict=True)]))
 
 
-@pytest.mark.some(3)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     "model", [load("piezo_stack"), parse(BODIES)], ids=["piezo_stack", "bodies"]
 )

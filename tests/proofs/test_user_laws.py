@@ -115,6 +115,7 @@ def test_towers_of_exponentials_end(law):
     assert rows(law)["passive", "damper"].verdict is not Verdict.PROVED
 
 
+@pytest.mark.long
 def test_what_parameters_choose_is_proved_branch_by_branch():
     """The first branch alone has the sign that the second would need."""
     text = "F_c*v/v_s*(exp(v/v_s) - 2.7*v/v_s) if n > 0 else F_c*v/v_s*{}"

@@ -153,7 +153,7 @@ def test_diodes_that_a_long_step_carries_beyond_their_bend_come_back():
     assert simulate(model_of(DIODES), step=1e-5, **TURNED).attrs["halvings"] < 1000
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("size", [2e-3, 1e-6, 1e-9])
 def test_a_small_body_follows_at_once(size):
     options = {"parameters": {"c_small": size}, "duration": 10.0}

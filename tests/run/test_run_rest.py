@@ -52,7 +52,7 @@ def test_what_is_a_difference_of_large_terms_at_rest_begins_to_move(law, force):
     assert run.attrs["halvings"] < 100
 
 
-@pytest.mark.some(2)
+@pytest.mark.some(1)
 @pytest.mark.parametrize(
     ("model", "rtol"),
     [("stack_bouc_wen", 1e-4), ("stack_maxwell", 1e-7), ("stack_bouc_wen", 1e-10)],

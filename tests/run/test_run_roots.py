@@ -101,6 +101,7 @@ def test_an_orifice_starts_from_rest_against_any_pump():
         assert pytest.approx(P, rel=1e-4) == np.sign(F) * (F / 1e-6) ** 2
 
 
+@pytest.mark.long
 def test_a_root_of_less_than_zero_ends_a_run_that_is_not_proved(tmp_path, monkeypatch):
     """Only a law that is proved goes on beyond its kinks within a step."""
     monkeypatch.chdir(tmp_path)

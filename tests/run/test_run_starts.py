@@ -162,7 +162,7 @@ def test_every_network_closes_both_balances_after_a_jump(path, h):
     assert numerical[-1] >= numerical[0] == 0.0
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("stiffness", ["k*(1 + (q/l)**2)", "k*(1 + (q/l)**2)**4"])
 def test_a_spring_that_grows_stiff_loses_too(tmp_path, stiffness):
     states, numerical = ledger(written(tmp_path, stiffness), 0.05, 2.0)
@@ -245,7 +245,7 @@ store = { kind = "capacitor", between = ["e", "gnd"], capacitance = "C" }
 """
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("h", [0.01, 0.005])
 def test_a_state_that_stands_still_again_does_not_end_the_iteration_of_others(h):
     """A start's loss heats `spare`, which nothing heats later; both steps after it are exact."""

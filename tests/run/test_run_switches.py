@@ -72,6 +72,7 @@ def diode(charge, rtol):
     return float(run.Q[-1]), solve_ivp(rate, (0, 1), [charge], **options).y[0, -1]
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("rtol", [1e-5, 1e-7])
 @pytest.mark.parametrize("charge", [-0.9e-6, -0.7e-6, -0.5e-6])
 def test_no_pulse_through_a_steep_law_is_missed(charge, rtol):

@@ -99,7 +99,7 @@ def test_a_solve_ends_where_its_residuals_are_small():
     assert np.abs(run.energy_residual).max() < 1e-15 * run.energy.max()
 
 
-@pytest.mark.some(1)
+@pytest.mark.long
 @pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-6])
 def test_rest_at_a_knot_takes_few_steps(rtol):
     """The sign of a flow that is round-off changes without end: no step is shorter for that."""

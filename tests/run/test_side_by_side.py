@@ -131,6 +131,7 @@ def test_members_whose_motions_repeat_run_as_they_do_alone():
     assert np.array_equal(others.states[8:], together.states[8:])
 
 
+@pytest.mark.some(1)
 @pytest.mark.parametrize("stages", [None, 3])
 def test_members_with_modes_that_ring_run_as_they_do_alone(stages):
     """Which states ring is known lane by lane."""

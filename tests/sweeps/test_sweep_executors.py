@@ -208,6 +208,7 @@ def test_an_interrupted_sweep_has_the_runs_that_are_done(options, tmp_path, monk
     assert np.isnan(partial.q.values[~done]).all()
 
 
+@pytest.mark.long
 def test_ctrl_c_of_a_sweep_names_no_file_of_python():
     code = LONG.format(duration=0.03, store=None, method=None, threads=2)
     pipe = subprocess.PIPE
