@@ -19,15 +19,19 @@ THRESHOLDS = 100_000, 50, 100
 
 def main() -> None:
     """Run the command line and exit with its code; SIGTERM stops it as Ctrl-C does."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     gc.set_threshold(*THRESHOLDS)
     sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115 - it was closed
     try:
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
         start_examiner(sys.argv[1:])
         from piezo_sym.cli import run
 
         code = run(sys.argv[1:])
     except KeyboardInterrupt:  # before the command has begun
+        sys.exit(STOPPED)
+    except RuntimeError as error:  # or while a class was made
+        if not isinstance(error.__cause__, KeyboardInterrupt):
+            raise
         sys.exit(STOPPED)
     gc.freeze()  # the system takes back the memory of all objects at once
     sys.exit(code)

