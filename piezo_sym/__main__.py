@@ -12,9 +12,7 @@ from pathlib import Path
 
 from piezo_sym.errors import PiezoError
 from piezo_sym.interrupts import STOPPED
-
-#: Of garbage collection: a command makes many objects, by imports above all, but little garbage.
-THRESHOLDS = 100_000, 50, 100
+from piezo_sym.processes import THRESHOLDS
 
 
 def main() -> None:

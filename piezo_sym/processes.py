@@ -22,6 +22,8 @@ T = TypeVar("T")
 
 #: The longest line of an answer; of a process that never ends its line, no more than this is read.
 LONGEST = 1 << 28
+#: Of garbage collection: imports and large systems make many objects, but little garbage.
+THRESHOLDS = 100_000, 50, 100
 #: Makes glibc keep freed memory for the next request: to get it from the system again takes longer
 #: than most answers.
 KEEP_MEMORY = {"MALLOC_TRIM_THRESHOLD_": "256000000", "MALLOC_MMAP_THRESHOLD_": "256000000"}

@@ -15,10 +15,10 @@ import numpy as np
 from piezo_sym.analysis.rest import RestSearch
 from piezo_sym.analysis.settling import Rest
 from piezo_sym.errors import RunError
-from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.checks import FloatArray, known_keys, positive
 from piezo_sym.run.guard import place
 from piezo_sym.run.module import GeneratedModule
-from piezo_sym.run.parameters import temperature_slopes
+from piezo_sym.run.parameters import set_temperature, temperature_slopes
 
 #: A relative difference of temperatures that is round-off; the most searches until then.
 ROUND_OFF, MOST_SEARCHES = 1e-12, 60
@@ -33,6 +33,25 @@ class Held:
     entropies: list[int]
     temperatures: FloatArray
 
+    @classmethod
+    def of(
+        cls,
+        module: GeneratedModule,
+        p: Any,
+        x: FloatArray,
+        given: Mapping[str, float] | None,
+        where: str,
+    ) -> Held:
+        """Return the bodies held at `given` temperatures; their entropies in x (n,) are set."""
+        names = [record.name for record in module.BODIES]
+        values = known_keys(given, names, where)
+        bodies = [names.index(name) for name in values]
+        rows = [
+            set_temperature(module, p, x, body, values[names[body]], f"{where}.{names[body]}")
+            for body in bodies
+        ]
+        return cls(bodies, rows, np.array([positive(T, where) for T in values.values()]))
+
     def rest(self, search: RestSearch, start: FloatArray) -> Rest:
         """Return the rest near `start` (n,), whose entropies are changed until the bodies have T.
 
@@ -45,7 +64,7 @@ class Held:
         for _ in range(MOST_SEARCHES):
             if np.max(np.abs(off), initial=0.0) <= ROUND_OFF:
                 return rest
-            move = -np.linalg.solve(slope, off)
+            move = -np.linalg.lstsq(slope, off)[0]  # beside a greatest temperature it is singular
             start[rows] += move
             rest, before = Rest.near(search, start), off
             off = self._off(module, p, rest.x)
@@ -69,12 +88,3 @@ class Held:
     def _off(self, module: GeneratedModule, p: Any, x: FloatArray) -> FloatArray:
         found = np.asarray(module.temperatures(x, p))[self.bodies]
         return np.asarray(found / self.temperatures - 1)
-
-
-def held_of(
-    module: GeneratedModule, temperatures: Mapping[str, float], rows: Mapping[str, int]
-) -> Held:
-    """Return bodies held at `temperatures` [K], given the row of the entropy of each."""
-    names = [record.name for record in module.BODIES]
-    values = np.array([float(temperatures[name]) for name in rows])
-    return Held([names.index(name) for name in rows], [*rows.values()], values)

@@ -19,7 +19,7 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.analysis.held import Held, held_of
+from piezo_sym.analysis.held import Held
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.analysis.settling import Rest, followed
 from piezo_sym.errors import RunError, UsageError, listing, quote
@@ -31,7 +31,6 @@ from piezo_sym.run.parameters import (
     LaneValue,
     read_initial,
     read_parameters,
-    set_temperature,
 )
 from piezo_sym.run.system import DrivenModule
 
@@ -141,15 +140,14 @@ def operating_point(
     p = read_parameters(checked(module), parameters)
     u = read_constants(module, inputs)
     start = read_initial(module, p, u, initial)
-    held = _held(module, p, start, temperatures)
-    free = np.setdiff1d(np.arange(start.size), list(held.values()))
+    held = Held.of(module, p, start, temperatures, f"{WHERE}.temperatures")
+    free = np.setdiff1d(np.arange(start.size), held.entropies)
     system = DrivenModule(module, p, read_inputs(module, by_name(module.INPUTS, p, u), 1.0))
     check_start(system, start)
     search = RestSearch.of(system, u, start, free)
-    body = held_of(module, temperatures or {}, held)
-    rest = body.rest(search, start)
-    _refuse_open_bodies(module, p, rest.x, rest.directions, held)
-    return _described(followed(rest, search, start), parameters or {}, body)
+    rest = held.rest(search, start)
+    _refuse_open_bodies(module, p, rest.x, rest.directions, held.bodies)
+    return _described(followed(rest, search, start), parameters or {}, held)
 
 
 def read_constants(
@@ -160,21 +158,10 @@ def read_constants(
     values = known_keys(given, names, where, names_elsewhere(module, "inputs"))
     default = dict(zip(names, module.INPUT_DEFAULTS, strict=True))
     for name, value in values.items():
-        if callable(value) or hasattr(value, "frequency"):
+        if callable(value):
             what, remedy = f"{quote(value)} varies in time", "for a period: periodic_steady_state()"
             raise UsageError(what, f"{where}.{name}", "a constant", remedy)
     return np.array([number(values.get(name, default[name]), f"{where}.{name}") for name in names])
-
-
-def _held(
-    module: GeneratedModule, p: Any, x: FloatArray, given: Mapping[str, float] | None
-) -> dict[str, int]:
-    """Set the entropies of held bodies in x (n,), and return the row of each."""
-    bodies, where = [record.name for record in module.BODIES], f"{WHERE}.temperatures"
-    return {
-        name: set_temperature(module, p, x, bodies.index(name), value, f"{where}.{name}")
-        for name, value in known_keys(given, bodies, where).items()
-    }
 
 
 def _refuse_open_bodies(
@@ -182,7 +169,7 @@ def _refuse_open_bodies(
     p: Any,
     x: FloatArray,
     directions: FloatArray,
-    held: Collection[str],
+    held: Collection[int],
 ) -> None:
     """Raise `RunError` if the temperature of a body that is free differs between states of rest.
 
@@ -194,8 +181,8 @@ def _refuse_open_bodies(
         np.asarray(module.temperatures(x[:, None] + step * directions, p)) for step in (STEP, -STEP)
     )
     change = np.abs(ahead - behind) / (STEP * (ahead + behind))
-    for body, differs in zip(module.BODIES, change > SAME, strict=True):
-        if np.any(differs) and body.name not in held:
+    for n, body in enumerate(module.BODIES):
+        if np.any(change[n] > SAME) and n not in held:
             what = f"rest leaves the temperature of '{body.name}' open: it depends on the way there"
             call = f"operating_point(..., temperatures={{'{body.name}': ...}})"
             remedy = f"hold it: {call}, for linearize as 'at'; or simulate() until it rests"

@@ -1,15 +1,15 @@
 """Linear functions of the state that no motion changes, such as n*q_1 - q_2 over a lever.
 
-Input: an `IPHS`.  Output: these functions.  In dx/dt = J0 E - B W
-+ G u and the heat of each body, a function N x keeps its value for any co-states, laws and inputs
-if N J0, N B and N G are zero, and N has nothing of an entropy that is heated.
+Input: an `IPHS`.  Output: these functions.  In dx/dt = J0 E - B W + G u, with the heat of bodies, a
+function N x keeps its value for any co-states, laws and inputs if N J0, N B and N G are zero, and N
+has nothing of an entropy that is heated.
 """
 
 import sympy as sp
 
 from piezo_sym.iphs.iphs import IPHS
 
-#: States of more rows are not looked at: elimination with symbols takes long.
+#: Of more states none is looked for: elimination with symbols takes long.
 MOST_ROWS = 24
 
 

@@ -78,6 +78,7 @@ class _Scout:
     ----------
     looked : the time [s] of the last sample that it has looked at.
     end : the time of the first at which the run stops [s]; infinity so far.
+    next : the time [s] from which it looks again.
     """
 
     def __init__(self, system: DrivenModule, watched: Watched) -> None:

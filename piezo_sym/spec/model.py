@@ -110,7 +110,7 @@ class Model(Tables):
         return self._hash
 
     @cached_property
-    def _hash(self) -> str:
+    def _hash(self) -> str:  # without the underscore it would be among the tables of dict(self)
         return spec_hash(self.flatten().model_dump())
 
     @property

@@ -16,6 +16,7 @@ from contextlib import suppress
 from dataclasses import replace
 from time import monotonic
 
+from piezo_sym.processes import THRESHOLDS
 from piezo_sym.verification.process import END, answer, packed
 from piezo_sym.verification.protocol import Progress
 
@@ -32,7 +33,7 @@ def main() -> None:
     _, most = resource.getrlimit(resource.RLIMIT_AS)
     limit = MEMORY if most == resource.RLIM_INFINITY else min(MEMORY, most)
     resource.setrlimit(resource.RLIMIT_AS, (limit, most))
-    gc.set_threshold(100_000, 50, 100)  # a large system makes many objects, but little garbage
+    gc.set_threshold(*THRESHOLDS)
     given, out = sys.stdin.buffer, sys.stdout.buffer
     sys.stdout = sys.stderr
     import piezo_sym.verification.examine  # noqa: F401  # now: the caller still reads its spec

@@ -107,10 +107,7 @@ def test_an_interrupted_run_ends_before_it_stops(calls):
 
 
 def test_an_interrupt_between_two_passes_keeps_what_the_first_has_reached(monkeypatch):
-    calls = []
-
     def interrupted(*given):
-        calls.append(given)
         if given[-1].states.shape[1] > 2000:  # of the first pass at last, or of the second
             raise KeyboardInterrupt
         return values_of(*given)
