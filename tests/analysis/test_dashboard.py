@@ -116,7 +116,8 @@ def test_times_of_events_are_marked_in_every_panel_and_named_once():
     for axes in figure.axes:
         up, hot = (lines for lines in axes.collections if isinstance(lines, LineCollection))
         assert (len(up.get_segments()), len(hot.get_segments())) == (4, 1)
-    assert not plot(actuator(times=11)).legends
+    for watched in ({}, {"events": {"never": "q - 1"}}):
+        assert not plot(actuator(times=11, **watched)).legends
 
 
 def test_curves_are_the_run():
