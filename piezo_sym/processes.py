@@ -55,16 +55,19 @@ class Worker:
         Raises `TimeoutError` if the answer takes longer than `seconds`. Raises `EOFError` or
         `OSError` if the process ends, or cannot be started.
         """
-        late = threading.Event()
+        late, asked = threading.Event(), threading.Lock()
         with self._lock:
             try:
                 self._start()
-                watch = threading.Timer(seconds, self._stop, (late,))
+                watch = threading.Timer(seconds, self._stop, (late, asked))
                 watch.start()
                 try:
                     yield from self._exchange(request, is_last)
                 finally:
+                    asked.acquire()  # a watch that is late itself stops no later request
                     watch.cancel()
+                    if late.is_set():
+                        self.close()
             except BaseException:  # late lines would be taken for the next answer
                 self.close()
                 if late.is_set():
@@ -118,10 +121,12 @@ class Worker:
             if is_last(line):
                 return
 
-    def _stop(self, late: threading.Event) -> None:
-        late.set()
-        if process := self.process:
-            self._kill(process)
+    def _stop(self, late: threading.Event, asked: threading.Lock) -> None:
+        if asked.acquire(blocking=False):  # nothing has ended this request before
+            late.set()
+            if process := self.process:
+                self._kill(process)
+            asked.release()
 
     def _kill(self, process: subprocess.Popen[bytes]) -> None:
         with suppress(ProcessLookupError):

@@ -264,3 +264,24 @@ def test_two_threads_may_close_a_process():
     first.join()
     assert slow.process is None
     assert process.poll() is not None
+
+
+def test_a_watch_that_is_late_itself_does_not_stop_the_next_request(monkeypatch):
+    watches = []
+
+    class Late(threading.Timer):
+        def start(self):
+            watches.append(self)
+
+        def cancel(self):
+            """It has begun to run, as it may just when the answer comes."""
+
+    monkeypatch.setattr("piezo_sym.processes.threading.Timer", Late)
+    echo = Worker("-uc", "import os\nwhile input(): print(os.getpid())")
+    (first,) = echo.ask(b"1", 10.0)
+    watches[0].function(*watches[0].args)
+    (second,) = echo.ask(b"2", 10.0)
+    assert first == second
+    watches[1].function(*watches[1].args)
+    assert echo.process.poll() is None
+    echo.close()
