@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from piezo_sym.errors import PiezoError, UnknownNameError, UsageError, nearest, quote
 
+BoolArray: TypeAlias = NDArray[np.bool_]
 FloatArray: TypeAlias = NDArray[np.float64]
 P = ParamSpec("P")
 R = TypeVar("R")

@@ -19,7 +19,7 @@ import numpy as np
 from piezo_sym.errors import InputWarning, UsageError, quote
 from piezo_sym.expressions.floats import Floats
 from piezo_sym.expressions.tree import Expr, names
-from piezo_sym.run.checks import FloatArray
+from piezo_sym.run.checks import BoolArray, FloatArray
 from piezo_sym.run.collocation import Ended, Later
 from piezo_sym.run.dataset import Evaluation, Trajectory, attributes
 from piezo_sym.run.module import rows
@@ -35,7 +35,8 @@ PER_STEP, LEAST, MOST, NUMBERS = 4, 1000, 20_000, 50_000_000
 EVENT = "times of event"
 #: Samples inside a bracket in one pass: around the zero of the chord, at these fractions of the
 #: bracket to either side; or evenly, where that did not narrow it by LITTLE. The most passes.
-AROUND = 2.0 ** np.array([-4.0, -12.0, -24.0, -40.0])
+AROUND = np.array([side * 2.0**power for side in (-1, 1) for power in (-4, -12, -24, -40)] + [0.0])
+AROUND.sort()
 EVEN, LITTLE, ROUNDS = 63, 1 / 16, 24
 
 
@@ -122,7 +123,7 @@ def locate(system: DrivenModule, watched: Watched, samples: FloatArray, run: Sam
         end = min(end, scout.end)
     even = np.linspace(start, end, _number(seen))
     times, seen = run(np.union1d(samples[samples <= end], even), at_last(even))
-    brackets: list[_Bracket] = []
+    brackets: list[_Brackets] = []
     if watched.stop:
         margin = stop_margin(system, watched, seen)
         goes_on = "" in watched.signs
@@ -132,18 +133,17 @@ def locate(system: DrivenModule, watched: Watched, samples: FloatArray, run: Sam
         if margin[0] > 0:
             what = f"the condition holds at t = {times[0]:g} s already"
             raise UsageError(what, "simulate.stop", "one that does not hold at the start")
-        first = np.flatnonzero(margin > 0)[:1].tolist()
-        pairs = (slice(k - 1, k + 1) for k in first)
-        found = (("", watched.stop, times[pair], margin[pair]) for pair in pairs)
-        brackets += [_Bracket(*values, closed=watched.closed) for values in found]
+        ends = np.flatnonzero(margin > 0)[:1, None] + [-1, 0]
+        found = ("", watched.stop, times[ends], margin[ends], np.zeros(len(ends), bool))
+        brackets.append(_Brackets(*found, closed=watched.closed))
     for name, tree in watched.event.items():
         values = values_of(system, tree, seen)
         signs = _signs(np.append(watched.signs.get(name, 0.0), values))
         watched.signs[name] = float(signs[-1])
         changed = np.flatnonzero((signs[1:] != signs[:-1]) & (signs[:-1] != 0))
-        ends = np.stack([np.maximum(changed - 1, 0), changed], axis=1)
-        brackets += [_Bracket(name, tree, times[pair], values[pair]) for pair in ends]
-    located = [(b.name, float(b.times[1])) for b in _narrow(system, brackets, run)]
+        ends = np.maximum(changed[:, None] + [-1, 0], 0)
+        brackets.append(_Brackets(name, tree, times[ends], values[ends], np.zeros(len(ends), bool)))
+    located = [(b.name, t) for b in _narrow(system, brackets, run) for t in b.times[:, 1].tolist()]
     stop = next((t for name, t in located if not name), None)
     kept = [(name, t) for name, t in located if stop is None or t <= stop]
     times_of = {name: np.array([t for n, t in kept if n == name]) for name in watched.event}
@@ -165,57 +165,71 @@ def _at_edge(values: FloatArray, *, closed: bool) -> FloatArray:
 
 
 def _signs(values: FloatArray) -> FloatArray:
-    """Return the sign of each value; zero and nan take the sign of the value before."""
+    """Return the sign of each value (..., n); zero and nan take the sign of the value before."""
     signs: FloatArray = np.nan_to_num(np.sign(values))
-    return signs[np.maximum.accumulate(np.where(signs != 0, np.arange(signs.size), 0))]
+    nonzero = np.where(signs != 0, np.arange(signs.shape[-1]), 0)
+    return np.take_along_axis(signs, np.maximum.accumulate(nonzero, axis=-1), axis=-1)
 
 
 @final
 @dataclass(frozen=True)
-class _Bracket:
-    """Two times [s] between which an expression changes its sign, and its values there."""
+class _Brackets:
+    """Pairs of times [s] between which one expression changes its sign.
+
+    Attributes
+    ----------
+    name, tree : of the event.
+    times, values : of the expression, (n, 2).
+    evenly : (n,), which of them to sample evenly next.
+    closed : whether zero counts as positive.
+    """
 
     name: str
     tree: Expr
     times: FloatArray
     values: FloatArray
-    evenly: bool = False
+    evenly: BoolArray
     closed: bool = False
 
-    def inner(self) -> FloatArray:
-        """Return the times between the two to sample next."""
-        first, last = self.times.tolist()
-        low, high = self.values.tolist()
-        ways = [np.linspace(first, last, EVEN + 2)]
-        if not self.evenly and low * high < 0:
+    def inside(self, times: FloatArray) -> BoolArray:
+        """Return which of the times (n, k) are between the two of their bracket."""
+        return (times > self.times[:, :1]) & (times < self.times[:, 1:])
+
+    def samples(self) -> FloatArray:
+        """Return the times (n, EVEN + 2) in each bracket, its ends among them, to sample next."""
+        (first, last), (low, high) = self.times.T[..., None], self.values.T[..., None]
+        even = np.linspace(self.times[:, 0], self.times[:, 1], EVEN + 2, axis=1)
+        with np.errstate(all="ignore"):
             zero = first + (last - first) * (low / (low - high))
-            apart = (last - first) * AROUND
-            ways.insert(0, np.concatenate([[zero], zero - apart, zero + apart]))
-        inside = (np.unique(times[(times > first) & (times < last)]) for times in ways)
-        return next((times for times in inside if times.size), np.empty(0))
+            around = np.clip(zero + (last - first) * AROUND, first, last)
+            chord = (low * high < 0) & ~self.evenly[:, None]
+        chord &= self.inside(around).any(axis=1, keepdims=True)
+        rest = np.repeat(last, EVEN + 1 - AROUND.size, axis=1)
+        return np.where(chord, np.concatenate([first, around, rest], axis=1), even)
 
     def narrow(self, times: FloatArray, values: FloatArray) -> Self:
-        """Return the bracket between the two of these times where the sign changes."""
-        first, last = np.searchsorted(times, self.times)
-        times, values = times[first : last + 1], values[first : last + 1]
+        """Return the brackets between those two of their times (n, k) where the sign changes."""
         values = _at_edge(values, closed=self.closed)
         signs = _signs(values)
-        k = int(np.argmax(signs == signs[-1])) or times.size - 1
-        evenly = times[k] - times[k - 1] > LITTLE * (times[-1] - times[0])
-        pair = slice(k - 1, k + 1)
-        return replace(self, times=times[pair], values=values[pair], evenly=bool(evenly))
+        end = np.argmax(signs == signs[:, -1:], axis=1)
+        end = np.where(end == 0, times.shape[1] - 1, end)
+        pairs = np.arange(len(end))[:, None], np.stack([end - 1, end], axis=1)
+        wide = np.diff(times[pairs]) > LITTLE * np.diff(self.times)
+        return replace(self, times=times[pairs], values=values[pairs], evenly=wide[:, 0])
 
 
-def _narrow(system: DrivenModule, brackets: list[_Bracket], run: Sampler) -> list[_Bracket]:
+def _narrow(system: DrivenModule, brackets: list[_Brackets], run: Sampler) -> list[_Brackets]:
     """Return brackets narrowed to neighbouring floats or round-off, all with the same runs."""
     for _ in range(ROUNDS):
-        inner = [bracket.inner() for bracket in brackets]
-        if not any(times.size for times in inner):
+        each = [(bracket, bracket.samples()) for bracket in brackets]
+        if not any(bracket.inside(times).any() for bracket, times in each):
             break
-        at = np.unique(np.concatenate([*inner, *(b.times for b in brackets)]))
-        times, seen = run(at, at_last(at))
-        values = {tree: values_of(system, tree, seen) for tree in {b.tree for b in brackets}}
-        brackets = [b.narrow(times, values[b.tree]) for b in brackets]
+        at = np.unique(np.concatenate([times.ravel() for _, times in each]))
+        _, seen = run(at, at_last(at))
+        brackets = [
+            bracket.narrow(times, values_of(system, bracket.tree, seen)[np.searchsorted(at, times)])
+            for bracket, times in each
+        ]
     return brackets
 
 
