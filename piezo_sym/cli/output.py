@@ -1,5 +1,6 @@
 """The output of commands: one console, and plain tables that also read well in a log."""
 
+import re
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -14,6 +15,10 @@ from rich.text import Text
 
 from piezo_sym.errors import InputWarning, PiezoError, UsageError, legible
 
+#: Match an argument of a function, and one that a remedy names.  Options with names of their own.
+ARGUMENT = re.compile(r"^simulate\.(\w+)\.?")
+ELSEWHERE = re.compile(r"(?<=give it )in '(\w+)'")
+OPTIONS = {"inputs": "--input", "parameters": "--set", "events": "--event", "store": "--out"}
 STYLES = {"PROVED": "green", "REFUTED": "bold red", "OPEN": "yellow"}
 
 
@@ -31,6 +36,26 @@ def about(spec: str, *kinds: type[PiezoError]) -> Iterator[None]:
         name = legible(Path(spec).name)
         if isinstance(error, kinds or PiezoError) and name not in str(error):
             error.put_in(name)
+        raise
+
+
+@contextmanager
+def named_as_options(start: str) -> Iterator[None]:
+    """Name options in errors about arguments of the function: simulate.parameters.d is --set d.
+
+    Parameters
+    ----------
+    start : the option that gave the initial state.
+    """
+
+    def option(argument: str) -> str:
+        return (OPTIONS | {"initial": start}).get(argument, "--" + argument.replace("_", "-"))
+
+    try:
+        yield
+    except UsageError as error:
+        error.where = ARGUMENT.sub(lambda found: f"{option(found[1])} ", error.where).strip()
+        error.remedy = ELSEWHERE.sub(lambda found: f"with {option(found[1])}", error.remedy)
         raise
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from piezo_sym.cli.output import about, print_table, warnings_as_lines
+from piezo_sym.cli.output import about, named_as_options, print_table, warnings_as_lines
 from piezo_sym.cli.words import Units, in_unit, pairs
 from piezo_sym.errors import (
     FileError,
@@ -125,7 +125,8 @@ def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
         options["outputs"] = [name.strip() for name in options["outputs"].split(",")]
     if _is_store(out):
         options["store"] = out
-    with warnings_as_lines(), keeping(out), of_spec:
+    start = "--initial" if isinstance(options["initial"], dict) else "--continue"
+    with warnings_as_lines(), keeping(out), of_spec, named_as_options(start):
         return run(spec, **options, progress=sys.stderr.isatty())
 
 

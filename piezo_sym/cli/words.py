@@ -220,7 +220,7 @@ class Units:
             known_keys(
                 {where.rpartition(" ")[2]: text},
                 self._content.get("inputs") or (),
-                "simulate.inputs",
+                "--input",
             )
         return signal(text, where, self._value)
 

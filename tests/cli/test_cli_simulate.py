@@ -224,7 +224,7 @@ REFUSED = [
         "header of a .csv may say degC",
     ),
     (("-p", "hysteron_count=2m"), "--set hysteron_count: 'm' is no unit of 'hysteron_count'; exp"),
-    (("-p", "zz=2mH"), "simulate.parameters: unknown name 'zz'; known: M, k"),
+    (("-p", "zz=2mH"), "--set: unknown name 'zz'; known: M, k"),
     (("--initial", "q=1mV"), "--initial q: 'mV' is no unit of 'q'; expected one such as m"),
     (("--initial", "T_body=20degC"), "--initial T_body: unit 'degC' has an offset; expected"),
     (("--step", "10uV"), "--step: 'uV' is no unit of 'step'; expected one such as s"),
@@ -235,7 +235,7 @@ REFUSED = [
     (("-i", "V_in=ramp"), "--input V_in: 'ramp' has no numbers; expected ramp(start [s], stop [s]"),
     (
         ("--stop", "q < 5mm"),
-        "simulate.stop: 'q < 5mm' has a number that runs into 'm'; expected a ",
+        "--stop: 'q < 5mm' has a number that runs into 'm'; expected a ",
     ),
     (("-i", "V_in"), "--input: 'V_in' has no '='; expected NAME=VALUE"),
     (("-i", "V_in=high"), "--input V_in: 'high' is no number; expected such as 0.5 or 1e-3"),
@@ -265,31 +265,31 @@ REFUSED = [
     (("-i", "V_in=sine(1,x)"), "--input V_in: 'x' is no number"),
     (("-i", "V_in=sine(1,-2)"), "--input V_in: sine.frequency: -2.0 is not positive"),
     (("-i", "V_in=sine(1,2"), "--input V_in: 'sine(1,2' has no ')' at its end; expected sine("),
-    (("-i", "V_in=nan"), "simulate.inputs.V_in: nan is not a finite number"),
-    (("-i", "Vin=1"), "simulate.inputs: unknown name 'Vin'; did you mean 'V_in'?"),
+    (("-i", "V_in=nan"), "--input V_in: nan is not a finite number"),
+    (("-i", "Vin=1"), "--input: unknown name 'Vin'; did you mean 'V_in'?"),
     (("-i", "T_e=290"), "model 'piezo_stack': start is outside the domain at t = 0 s"),
-    (("-p", "mass=1"), "simulate.parameters: unknown name 'mass'; known: M, k"),
+    (("-p", "mass=1"), "--set: unknown name 'mass'; known: M, k"),
     (("-i", "V_in=@"), "--input V_in: '@' names no file; expected @FILE.csv"),
     (("--initial", "q"), "--initial: 'q' has no '='"),
     (("--initial", "q=far"), "--initial q: 'far' is no number"),
-    (("--initial", "Q=1"), "simulate.initial: unknown name 'Q'; did you mean 'q'?"),
-    (("--initial", "L=1"), "simulate.initial: unknown name 'L'; give it in 'parameters'"),
-    (("-p", "phi=1"), "simulate.parameters: unknown name 'phi'; give it in 'initial'"),
-    (("-p", "V_in=1"), "simulate.parameters: unknown name 'V_in'; give it in 'inputs'"),
-    (("-i", "S=1"), "simulate.inputs: unknown name 'S'; give it in 'initial'"),
+    (("--initial", "Q=1"), "--initial: unknown name 'Q'; did you mean 'q'?"),
+    (("--initial", "L=1"), "--initial: unknown name 'L'; give it with --set"),
+    (("-p", "phi=1"), "--set: unknown name 'phi'; give it with --initial"),
+    (("-p", "V_in=1"), "--set: unknown name 'V_in'; give it with --input"),
+    (("-i", "S=1"), "--input: unknown name 'S'; give it with --initial"),
     (("-p", "M"), "--set: 'M' has no '='"),
     (("-p", "M=heavy"), "--set M: 'heavy' is no number"),
-    (("-p", "d=1,2"), "simulate.parameters.d: '[1, 2]' is a list"),
+    (("-p", "d=1,2"), "--set d: '[1, 2]' is a list"),
     (("-p", "d=-1"), "model 'piezo_stack': start is outside the domain"),
-    (("-p", "L=1,2,3"), "simulate.parameters.L: 3 values for 2 lanes"),
-    (("-p", "hysteron_count=0"), "simulate.parameters.hysteron_count: 0 is not allowed"),
-    (("-p", "hysteron_count=2.5"), "simulate.parameters.hysteron_count: 2.5 is not allowed"),
-    (("--rtol", "1"), "simulate.rtol: 1 is out of range"),
-    (("--method", "Euler"), "simulate.method: unknown method 'Euler'"),
-    (("--times", "1"), "simulate.times: 1 is not allowed"),
-    (("--duration", "0"), "simulate.duration: 0.0 is not positive"),
-    (("--duration", "1e300"), "simulate.duration: 1e+300 is too long; expected at most 1e+18 s"),
-    (("--duration", "nan"), "simulate.duration: nan is not a finite number"),
+    (("-p", "L=1,2,3"), "--set L: 3 values for 2 lanes"),
+    (("-p", "hysteron_count=0"), "--set hysteron_count: 0 is not allowed"),
+    (("-p", "hysteron_count=2.5"), "--set hysteron_count: 2.5 is not allowed"),
+    (("--rtol", "1"), "--rtol: 1 is out of range"),
+    (("--method", "Euler"), "--method: unknown method 'Euler'"),
+    (("--times", "1"), "--times: 1 is not allowed"),
+    (("--duration", "0"), "--duration: 0.0 is not positive"),
+    (("--duration", "1e300"), "--duration: 1e+300 is too long; expected at most 1e+18 s"),
+    (("--duration", "nan"), "--duration: nan is not a finite number"),
     (("--out", "run.txt"), "--out: 'run.txt' has no known ending; expected .nc, .csv"),
     (("--out", "run"), "--out: 'run' has no known ending"),
 ]
@@ -316,7 +316,7 @@ def test_a_fault_of_the_spec_has_its_name_and_one_of_an_option_has_not(refused, 
     said = refused("simulate", path, "--duration", "1e-3")
     assert said.startswith("mine.toml: ")
     assert said == refused("verify", path)
-    assert refused(*SHORT, "--initial", "M=1").startswith("simulate.initial: ")
+    assert refused(*SHORT, "--initial", "M=1").startswith("--initial: ")
 
 
 def test_an_edited_spec_runs_and_its_old_module_is_named(
@@ -330,7 +330,7 @@ def test_an_edited_spec_runs_and_its_old_module_is_named(
     assert f"is not used; replace it by `piezo-sym generate {path}`" in answer.err
     assert len(answer.err.splitlines()) == 1
     wrong = refused("simulate", path, "--duration", "1e-3", "--set", "zz=1")
-    assert wrong.startswith("simulate.parameters: unknown name 'zz'")  # one line, the error
+    assert wrong.startswith("--set: unknown name 'zz'")  # one line, the error
 
 
 def last(path):
