@@ -38,22 +38,6 @@ def dress(axes: Axes) -> None:
     axes.tick_params(labelsize=SMALL)
 
 
-def draw_lines(
-    axes: Axes,
-    x: xarray.DataArray,
-    y: xarray.DataArray,
-    over: str,
-    unit: str,
-    linewidth: float = 1.1,
-) -> None:
-    """Draw y over x, one line per value of the dimension `over`, with that value as its label."""
-    for value, colour, dash in zip(y[over].values, COLOURS, DASHES, strict=False):
-        along = x.sel({over: value}) if over in x.dims else x
-        line = y.sel({over: value})
-        label = f"{value:.0f} {unit}"
-        axes.plot(along, line, linestyle=dash, color=colour, linewidth=linewidth, label=label)
-
-
 def name_axes(axes: Axes, x: str, y: str) -> None:
     """Label the axes, with units."""
     axes.set_xlabel(x, fontsize=LABEL)

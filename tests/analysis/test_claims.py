@@ -8,7 +8,7 @@ import pytest
 
 from piezo_sym import periodic_steady_state, periodic_steady_states, simulate, sine
 from piezo_sym.analysis import loops
-from piezo_sym.analysis.figures import figure_2, figure_5
+from piezo_sym.analysis.figures import lines
 
 TEMPERATURES = (298.15, 303.15, 308.15, 313.15)
 FREQUENCIES = (10, 50, 100, 200)
@@ -35,7 +35,7 @@ def over_frequency():
 
 def test_figure_2_the_operator_is_odd_dead_in_the_middle_and_flatter_when_warm(stack):
     for T in TEMPERATURES:
-        data = figure_2.curve(stack, T - 273.15)
+        data = lines.operator(stack, T - 273.15)
         i, w = data.i.values, data.w_T.values
         expected = 10 / (T - 296.15) * np.sign(i) * np.maximum(np.abs(i) - 0.5, 0)
         assert np.abs(w - expected).max() < 1e-10
@@ -64,16 +64,16 @@ def test_figure_3_shows_loops_that_close_within_their_warming():
 
 @pytest.mark.parametrize(("T_e", "shift"), [(T_e, 5 / 298.15) for T_e in TEMPERATURES])
 def test_figure_5_the_tip_rests_where_the_temperature_says(stack, T_e, shift):
-    run = figure_5.stepped(stack, T_e, duration=20.0, times=2)
+    run = lines.stepped(stack, T_e, duration=20.0, times=2)
     static = 100 * 10 * T_e / (296.15 * 5e5)
     assert float(run.q[-1]) == pytest.approx(static, rel=1e-6)
-    assert figure_5.static(stack, 100, T_e) == pytest.approx(static, rel=1e-15)
-    assert figure_5.static(stack, 100, T_e + 5) / static - 1 == pytest.approx(shift, rel=0.06)
+    assert lines.static(stack, 100, T_e) == pytest.approx(static, rel=1e-15)
+    assert lines.static(stack, 100, T_e + 5) / static - 1 == pytest.approx(shift, rel=0.06)
 
 
 def test_figure_5_shows_the_offset_within_its_window(stack):
     for T_e in TEMPERATURES:
-        run = figure_5.stepped(stack, T_e)
+        run = lines.stepped(stack, T_e)
         static = 100 * 10 * T_e / (296.15 * 5e5)
         warmer = float(run.T_body[-1]) / T_e - 1
         assert warmer == pytest.approx(1.75e-4, abs=1e-5)

@@ -7,10 +7,8 @@ Notebook 06 and tests/analysis/test_claims.py say which claims of section 4 hold
 """
 
 from piezo_sym.analysis.figures.figure import PaperFigure, data_of
-from piezo_sym.analysis.figures.figure_2 import FIGURE_2
 from piezo_sym.analysis.figures.figure_4 import FIGURE_4
-from piezo_sym.analysis.figures.figure_5 import FIGURE_5
-from piezo_sym.analysis.figures.hysteresis import FIGURE_3, FIGURE_6
+from piezo_sym.analysis.figures.lines import FIGURE_2, FIGURE_3, FIGURE_5, FIGURE_6
 
 FIGURES = (FIGURE_2, FIGURE_3, FIGURE_4, FIGURE_5, FIGURE_6)
 

@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 from piezo_sym.run import GeneratedModule
 
 ZERO_CELSIUS = 273.15
-CELSIUS = "\N{DEGREE SIGN}C"
 #: Environment temperatures of the paper [degrees Celsius].
 TEMPERATURES = (25.0, 30.0, 35.0, 40.0)
 AMPLITUDE = 100.0  # of the voltage [V]
