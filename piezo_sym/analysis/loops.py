@@ -9,15 +9,19 @@ The area of voltage over the charge drawn is the energy put in per cycle; in per
 it is the heat of the cycle, if no other port puts energy in.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
-import xarray
 from numpy.typing import ArrayLike
 
 from piezo_sym.errors import UsageError, nearest
 from piezo_sym.run.checks import FloatArray, positive
+
+if TYPE_CHECKING:
+    import xarray
 
 FEWEST = 8  # samples; fewer make no loop
 
@@ -138,6 +142,7 @@ def drawn(run: xarray.Dataset, port: str) -> xarray.DataArray:
     ------
     UsageError : the run has no such port.
     """
+    import xarray
     from scipy.interpolate import CubicSpline
 
     ports = [str(name)[2:] for name in run.data_vars if str(name).startswith("y_")]
