@@ -12,7 +12,7 @@ temperature between zeros, and its slope at a zero says whether that state is st
 
 What is conserved keeps its value: linear functions of the state, such as the difference in length
 of parallel springs, and what a period near the state conserves, such as a current that circulates
-in a dead zone, or the slip of a stop that sticks.
+in a dead zone, or the slip of a stop that sticks.  Messages say which state does not settle.
 """
 
 import warnings
@@ -28,6 +28,7 @@ from piezo_sym.analysis.conserved import FLOOR
 from piezo_sym.analysis.stroboscope import Period, Rows, Stroboscope
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray, positive_range
+from piezo_sym.run.module import row_name
 
 DIFFERENCE = 1e-4  # step of difference quotients, over the size of the state
 TOLERANCE = 1e-8  # change of a state that repeats, over its size
@@ -43,6 +44,7 @@ FIRST_RISE = 1e-4  # the first step of a scan, over its coldest temperature
 POINTS = 40
 TURNING = 12  # the most states in the search for a least drift
 ZERO = 1e-10  # width of a bracket of a zero, in log T
+PERIODS = 100  # from the start, after which a state that still changes is said to drift
 
 
 @final
@@ -229,3 +231,33 @@ def zeros(strobe: Stroboscope, known: Sequence[Settled]) -> list[Settled]:
             else:
                 found.append(states[min(states, key=lambda other: abs(other - root))])
     return sorted(found, key=lambda state: state.temperature)
+
+
+def unsettled(strobe: Stroboscope) -> str:
+    """Return which state changes most in a period, over its size, after `PERIODS` periods."""
+    x = change = size = strobe.start
+    for count in range(PERIODS):
+        try:
+            period = strobe.look(x)
+        except RunError as error:
+            return f"in period {count + 1} from the start, {error.what}"
+        change, size, x = period.end - x, period.size, period.end
+    row = int(np.argmax(np.abs(change) / size))
+    return f"after {PERIODS} periods from the start, {_drift(strobe, row, change)}"
+
+
+def warn_of_drift(strobe: Stroboscope, x: FloatArray) -> None:
+    """Warn of each state that moves nothing and does not repeat, from the state x (n,)."""
+    period = strobe.look(x)
+    change = period.end - x
+    for row in np.flatnonzero(~strobe.repeating & (np.abs(change) > TOLERANCE * period.size)):
+        text = f"{_drift(strobe, int(row), change)}; no rate depends on it here, and all other"
+        text = f"{text} states repeat: a run goes on so until a law depends on it"
+        warnings.warn(text, SteadyWarning, stacklevel=4)
+
+
+def _drift(strobe: Stroboscope, row: int, change: FloatArray) -> str:
+    """Return how far a state drifts in a period, `change` being that of the states (n,)."""
+    name = row_name(strobe.module.STATES, strobe.values, row)
+    units = {record.name: record.unit for record in strobe.module.STATES}
+    return f"'{name}' drifts by {change[row]:.6g} {units[name.partition('[')[0]]} a period"

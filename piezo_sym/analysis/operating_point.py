@@ -19,9 +19,8 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-from piezo_sym.analysis.held import Held
 from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
-from piezo_sym.analysis.settling import Rest, followed
+from piezo_sym.analysis.settling import Held, Rest, followed
 from piezo_sym.errors import RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, calling, known_keys, number
 from piezo_sym.run.guard import check_start

@@ -30,9 +30,10 @@ from piezo_sym.analysis.balance import (
     jacobian,
     scan,
     temperature_range,
+    unsettled,
+    warn_of_drift,
     zeros,
 )
-from piezo_sym.analysis.drifting import unsettled, warn_of_drift
 from piezo_sym.analysis.stroboscope import Stroboscope, over_period, stroboscope
 from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray, calling, number, positive
