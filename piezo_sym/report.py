@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from enum import Enum
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, final
@@ -76,11 +76,15 @@ class Row:
         return self.id == "units"
 
     @property
+    def at(self) -> str:
+        """The witness as text, such as ``d = -1, v = 1``, or ''."""
+        return ", ".join(f"{name} = {value}" for name, value in (self.witness or {}).items())
+
+    @property
     def why(self) -> str:
         """The reason, with the witness after its first part."""
-        at = ", ".join(f"{name} = {value}" for name, value in (self.witness or {}).items())
         fails, *more = self.reason.split("; ", 1)
-        return "; ".join([f"{fails} at {at}" if at else fails, *more])
+        return "; ".join([f"{fails} at {self.at}" if self.at else fails, *more])
 
     def as_dict(self, model: str) -> dict[str, object]:
         """Return the row as plain data, as ``verify --json`` prints it."""
@@ -248,18 +252,10 @@ def report_of(text: str) -> Report:
 
 
 def _row(entry: Mapping[str, Any]) -> Row:
-    return Row(
-        id=entry["id"],
-        element=entry["element"] or "",
-        statement=entry["statement"],
-        verdict=Verdict(entry["verdict"]),
-        witness=entry["witness"],
-        reason=entry["reason"] or "",
-        required=entry["required"],
-        method=entry["method"],
-        points=entry["points"],
-        certificate=tuple(entry["certificate"] or ()),
-    )
+    given = {name: entry[name] for name in Row.__annotations__ if entry.get(name) is not None}
+    given["verdict"] = Verdict(entry["verdict"])
+    given["certificate"] = tuple(entry["certificate"] or ())
+    return Row(**{"element": "", **given})
 
 
 def _entry(row: Row, stated: Stated | None) -> dict[str, object]:
@@ -269,13 +265,10 @@ def _entry(row: Row, stated: Stated | None) -> dict[str, object]:
         "statement": row.statement,
         "required": row.required,
         **{name: plain[name] for name in ("verdict", "witness", "reason")},
-        "method": row.method,
-        "points": row.points,
-        "certificate": list(row.certificate) or None,
+        **{name: getattr(row, name) for name in ("method", "points")},
+        "certificate": row.certificate or None,
     }
     if stated:
-        entry["latex"] = stated.latex
-        entry["assumptions"] = list(stated.assumptions)
-        entry["rests_on"] = [list(name) for name in stated.rests_on]
+        entry |= asdict(stated)
         entry["queries"] = [label for label, _ in stated.queries]
     return entry

@@ -1,18 +1,20 @@
-"""``piezo-sym verify SPEC...``: prove the physics of specs."""
+"""``piezo-sym verify SPEC...``: prove the physics of specs; verdicts as text, JSON, JUnit XML."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
+from xml.etree import ElementTree as ET
 
 import typer
 from rich.text import Text
 
-from piezo_sym.cli.junit import junit_xml
 from piezo_sym.cli.output import STYLES, about, console, print_table
 from piezo_sym.errors import ContradictionError, PiezoError, ProofError, legible
 from piezo_sym.files import write_text
+from piezo_sym.version import VERSION
 
 #: What is said of an input without effect.
 UNUSED = "no element uses it; name it in one, as input = '...', or leave it out"
@@ -143,5 +145,64 @@ def _print(report: Report) -> None:
 
 
 def _why(row: Row) -> str:
-    at = ", ".join(f"{name} = {value}" for name, value in (row.witness or {}).items())
-    return f"{row.name}: {row.reason}" + (f"\n  at {at}" if at else "")
+    return f"{row.name}: {row.reason}" + (f"\n  at {row.at}" if row.at else "")
+
+
+def junit_xml(reports: Iterable[tuple[Report, Recheck | None]], errors: list[PiezoError]) -> str:
+    """Return JUnit XML: REFUTED is a failure, OPEN an error, unless it is only information.
+
+    For each model it has a suite with one case per property. A row that the second program does not
+    confirm is a failure in the suite ``<model>, rechecked``. A spec that could not be read is a
+    suite of its own, with one error.
+    """
+    root = ET.Element("testsuites", name=f"piezo-sym {VERSION}")
+    for report, second in reports:
+        failed = [row.verdict.value for row in report.failures]
+        counts = len(report.rows), failed.count("REFUTED"), failed.count("OPEN")
+        suite = _suite(root, report.model, *counts)
+        for row in report.rows:
+            _verdict(suite, report.model, row)
+        if second is not None:
+            _opinion(root, report, second)
+    for error in errors:
+        where = error.where or "spec"
+        suite = _suite(root, where, 1, 0, 1)
+        _case(suite, where, "load", "error", message=str(error), type=type(error).__name__)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _suite(root: ET.Element, name: str, tests: int, failures: int, errors: int) -> ET.Element:
+    counts = {"tests": str(tests), "failures": str(failures), "errors": str(errors)}
+    return ET.SubElement(root, "testsuite", {"name": name, **counts})
+
+
+def _case(suite: ET.Element, model: str, name: str, kind: str, text: str = "", **more: str) -> None:
+    """Add a case; `kind` is that of its fault, if it has one, `text` and `more` say what it is."""
+    case = ET.SubElement(suite, "testcase", classname=model, name=name)
+    if kind:
+        ET.SubElement(case, kind, more).text = text or None
+
+
+def _verdict(suite: ET.Element, model: str, row: Row) -> None:
+    name, text, word = f"{row.id} {row.element}".strip(), "", row.verdict.value
+    kind, more = {"PROVED": "", "REFUTED": "failure"}.get(word, "error"), {"message": row.reason}
+    if kind and not row.required:
+        kind, more = "skipped", {"message": f"information: {word}: {row.reason}"}
+    elif kind:
+        more["type"] = word
+        text = f"{row.statement}\n{row.reason}" + (f"\nat {row.at}" if row.at else "")
+    _case(suite, model, name, kind, text, **more)
+
+
+def _opinion(root: ET.Element, report: Report, second: Recheck) -> None:
+    """Add the verdicts of the second program."""
+    faults = len(second.faults(report.information))
+    tests, name = len(second.rows) + bool(second.failed), f"{report.model}, rechecked"
+    suite = _suite(root, name, tests, faults, 0)
+    for key, word in second.rows.items():
+        kind = "skipped" if word == "stated" or key in report.information else "failure"
+        kind *= word != "confirmed"
+        _case(suite, name, " ".join(filter(None, key)), kind, message=word)
+    if second.failed:
+        _case(suite, name, "checker", "failure", message=second.failed)

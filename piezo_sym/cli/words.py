@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from functools import cached_property
 from inspect import Parameter, signature
 from pathlib import Path
-from typing import Any, final
+from typing import Any, NoReturn, final
 
 from piezo_sym.cli.output import about
 from piezo_sym.errors import SpecError, UsageError, listing, nearest, quote
@@ -49,59 +49,11 @@ def pairs(
         yield name, read(value.strip(), f"{option} {name}")
 
 
-def signal(text: str, where: str, read: Callable[[str, str, str], float] | None = None) -> Any:
-    """Return a number, a signal such as ``sine(100, 100, offset=50)``, or samples, ``@drive.csv``.
-
-    Nothing is evaluated. `read` converts a value of the input, (text, place, name of the number),
-    to SI.
-    """
-
-    def value(part: str, name: str = "") -> float:
-        if read is None or name in UNITS:
-            return in_unit(part, where, UNITS.get(name, ""), name)
-        return read(part, where, name)
-
-    if text.startswith("@"):
-        return samples(text[1:], where)
-    from piezo_sym.run.signals import SIGNALS
-
-    if text in SIGNALS:
-        raise UsageError(f"{quote(text)} has no numbers", where, spelled(text))
-    call = CALL.fullmatch(text)
-    if text.endswith((".csv", ".txt")):
-        raise UsageError(f"{quote(text)} is a file", where, f"@{text}")
-    if FORMULA.search(text):
-        sine = SINE.fullmatch(text.replace(" ", ""))
-        numbers = [sine[1] or "1", sine[2] or "1", *([sine[3]] if sine[3] else [])] if sine else []
-        remedy = f"write sine({', '.join(numbers)})" if sine else "or a table, @FILE.csv"
-        raise UsageError(f"{quote(text)} is a formula", where, spelled("sine"), remedy)
-    if call is None:
-        return value(text)
-    name = call["name"]
-    if name not in SIGNALS:
-        raise UsageError(f"{quote(name)} is no signal", where, remedy=nearest(name, SIGNALS))
-    if not call["end"]:
-        raise UsageError(f"{quote(text)} has no ')' at its end", where, spelled(name))
-    given, named = _arguments(name, call["numbers"], value)
-    try:
-        return SIGNALS[name](*given, **named)
-    except UsageError as error:
-        if error.expected.startswith(f"{name}("):
-            error.expected = spelled(name)
-        error.put_in(where)
-        raise
-
-
-def _arguments(
-    name: str, text: str, read: Callable[[str, str], float]
-) -> tuple[list[float], dict[str, float]]:
-    """Return the numbers of a signal, by place and by name; `read` converts (text, name) to SI."""
-    words = [part.rpartition("=") for part in text.split(",")]
-    plain = [value for _, equals, value in words if not equals]
-    named = {word.strip(): value for word, equals, value in words if equals}
-    places = [*_signal_parameters(name), *[""] * len(plain)]  # more than it takes are refused later
-    given = [read(value, place) for value, place in zip(plain, places, strict=False)]
-    return given, {place: read(value, place) for place, value in named.items()}
+def _refuse_formula(text: str, where: str) -> NoReturn:
+    sine = SINE.fullmatch(text.replace(" ", ""))
+    numbers = [sine[1] or "1", sine[2] or "1", *([sine[3]] if sine[3] else [])] if sine else []
+    remedy = f"write sine({', '.join(numbers)})" if sine else "or a table, @FILE.csv"
+    raise UsageError(f"{quote(text)} is a formula", where, spelled("sine"), remedy)
 
 
 def _signal_parameters(name: str) -> dict[str, Any]:
@@ -147,17 +99,6 @@ def number(text: str, where: str) -> float:
     return int(value) if value.is_integer() and text.strip().isdigit() else value
 
 
-def numbers(
-    text: str, where: str, read: Callable[[str, str], float] = number
-) -> float | list[float]:
-    """Return a number, or a list of them for the lanes of a bank; `read` converts each."""
-    if text.startswith("["):
-        remedy = f"write {text.strip('[]')} without them"
-        raise UsageError(f"{quote(text)} has brackets", where, remedy=remedy)
-    values = [read(part, where) for part in text.split(",")]
-    return values[0] if len(values) == 1 else values
-
-
 def in_unit(text: str, where: str, needed: str, name: str = "") -> float:
     """Return a number in SI: a plain one, or one with a unit like `needed`; with any if it is "".
 
@@ -200,31 +141,73 @@ class Units:
         return self._numbers(text, where, lambda name: self._states.get(name, ""))
 
     def _numbers(self, text: str, where: str, unit_of: Callable[[str], str]) -> float | list[float]:
-        if not any(map(IN_UNIT.fullmatch, text.split(","))):
+        parts, name = text.split(","), where.rpartition(" ")[2]
+        in_units = any(map(IN_UNIT.fullmatch, parts))
+        if not in_units:
             self._assume(where, text)
-            return numbers(text, where)
-        name = where.rpartition(" ")[2]
-        unit = "1" if name.endswith("_count") else unit_of(name)
+        unit = "1" if name.endswith("_count") else unit_of(name) if in_units else ""
+        if text.startswith("["):
+            remedy = f"write {text.strip('[]')} without them"
+            raise UsageError(f"{quote(text)} has brackets", where, remedy=remedy)
 
-        def read(part: str, where: str) -> float:
-            if not IN_UNIT.fullmatch(part):
+        def read(part: str) -> float:
+            if in_units and not IN_UNIT.fullmatch(part):
                 expected = "a unit for each number, or none"
                 raise UsageError(f"{quote(part)} has no unit", where, expected)
             return in_unit(part, where, unit, name)
 
-        return numbers(text, where, read)
+        values = [read(part) for part in parts]
+        return values[0] if len(values) == 1 else values
 
     def signal(self, text: str, where: str) -> Any:
-        """Return a signal, or a number, in its unit or SI."""
-        if text.startswith("@"):  # or the column of that name would be looked for
-            known_keys(
-                {where.rpartition(" ")[2]: text},
-                self._content.get("inputs") or (),
-                "--input",
-            )
-        return signal(text, where, self._value)
+        """Return a number, a signal such as ``sine(100, 100, offset=50)``, or ``@drive.csv``.
 
-    def _value(self, text: str, where: str, place: str) -> float:
+        Nothing is evaluated. Numbers are in the units of the input, or those they say, or in SI.
+        """
+        if text.startswith("@"):  # or the column of that name would be looked for
+            known = self._content.get("inputs") or ()
+            known_keys({where.rpartition(" ")[2]: text}, known, "--input")
+            return samples(text[1:], where)
+        from piezo_sym.run.signals import SIGNALS
+
+        if text in SIGNALS:
+            raise UsageError(f"{quote(text)} has no numbers", where, spelled(text))
+        call = CALL.fullmatch(text)
+        if text.endswith((".csv", ".txt")):
+            raise UsageError(f"{quote(text)} is a file", where, f"@{text}")
+        if FORMULA.search(text):
+            _refuse_formula(text, where)
+        if call is None:
+            return self._value(text, where)
+        name = call["name"]
+        if name not in SIGNALS:
+            raise UsageError(f"{quote(name)} is no signal", where, remedy=nearest(name, SIGNALS))
+        if not call["end"]:
+            raise UsageError(f"{quote(text)} has no ')' at its end", where, spelled(name))
+        given, named = self._arguments(name, call["numbers"], where)
+        try:
+            return SIGNALS[name](*given, **named)
+        except UsageError as error:
+            if error.expected.startswith(f"{name}("):
+                error.expected = spelled(name)
+            error.put_in(where)
+            raise
+
+    def _arguments(self, name: str, text: str, where: str) -> tuple[list[float], dict[str, float]]:
+        """Return the numbers of a signal, by place and by name, in SI."""
+        words = [part.rpartition("=") for part in text.split(",")]
+        plain = [value for _, equals, value in words if not equals]
+        named = {word.strip(): value for word, equals, value in words if equals}
+        places = [*_signal_parameters(name), *[""] * len(plain)]  # too many are refused later
+        given = [
+            self._value(value, where, word) for value, word in zip(plain, places, strict=False)
+        ]
+        return given, {word: self._value(value, where, word) for word, value in named.items()}
+
+    def _value(self, text: str, where: str, place: str = "") -> float:
+        """Return the number of a signal at one of its places, or that of an input, in SI."""
+        if place in UNITS:
+            return in_unit(text, where, UNITS[place], place)
         if not IN_UNIT.fullmatch(text):
             self._assume(where)
         name = where.rpartition(" ")[2]

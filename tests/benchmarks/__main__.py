@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from piezo_sym import PiezoError, load
-from piezo_sym.cli.words import pairs, signal
+from piezo_sym.cli.words import Units, pairs
 from piezo_sym.files import write_text
 from piezo_sym.run.checks import positive
 from tests.benchmarks.groups import GROUPS, bench
@@ -27,7 +27,7 @@ def main(words: list[str] | None = None) -> int:
     try:
         report = bench(
             load(given.spec),
-            inputs=dict(pairs(given.input, "--input", signal)),
+            inputs=dict(pairs(given.input, "--input", Units(given.spec).signal)),
             duration=positive(given.duration, "--duration"),
             only=given.only,
             settings=replace(settings, rounds=given.repeat) if given.repeat else settings,
