@@ -79,20 +79,18 @@ def report_and_files(
     verdicts if the time was too short to print the module, or if a model is known to be refuted;
     with `allow_unproved` it is printed all the same.
     """
-    files: Mapping[str, str] | None
-    if not allow_unproved and (files := kept(model.key, REFUTED)):
-        return report_of(files[PROOFS.format(model.name)]), files
-    files = kept(model.key, PROVED)
-    if files and PROOFS.format(model.name) in files:
-        return report_of(files[PROOFS.format(model.name)]), files
+    for kind in (PROVED,) if allow_unproved else (REFUTED, PROVED):
+        if found := kept_results(model, kind):
+            return found
     report, template = report_and_texts(model)
     return report, keep_results(model, report, template)
 
 
-def known_refuted(model: Model) -> Report | None:
-    """Return the verdicts on a model that was refuted before, or None."""
-    files = kept(model.key, REFUTED)
-    return report_of(files[PROOFS.format(model.name)]) if files else None
+def kept_results(model: Model, kind: str) -> tuple[Report, Mapping[str, str]] | None:
+    """Return the verdicts on a model, and its files, as they are kept; None if they are not."""
+    files = kept(model.key, kind) or {}
+    proofs = files.get(PROOFS.format(model.name))
+    return (report_of(proofs), files) if proofs else None
 
 
 def refuse_unproved(report: Report) -> None:

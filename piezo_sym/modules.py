@@ -22,6 +22,7 @@ import numpy as np
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.files import path_text, read_text, temporary_folder
 from piezo_sym.module_cache import (
+    REFUTED,
     SHAPE,
     UNPROVED_MODULE,
     cache_module,
@@ -209,14 +210,14 @@ def _derived(model: Model, stages: int | None) -> ModuleType:
             _check_derivation(model)
         return cache_module(model.name, model.sha256, found.filled(data), own_sources())
 
-    from piezo_sym.build import keep_results, known_refuted, refuse_unproved, report_and_texts
+    from piezo_sym.build import keep_results, kept_results, refuse_unproved, report_and_texts
 
     def meanwhile(template: Template) -> AbstractContextManager[None]:
         return _compiling_ahead(model.name, shape, template.filled(data), stages)
 
     written = read_text(GENERATED / model.name / f"{model.name}.py") or ""
-    if model.sha256 not in written and (refuted := known_refuted(model)):
-        refuse_unproved(refuted)
+    if model.sha256 not in written and (refuted := kept_results(model, REFUTED)):
+        refuse_unproved(refuted[0])
     report, found = report_and_texts(model, meanwhile)
     if found and report.failures and (module := _unproved(model, report, found.filled(data))):
         return module
