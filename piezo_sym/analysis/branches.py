@@ -19,14 +19,17 @@ import numpy as np
 
 from piezo_sym.analysis.balance import grid, scan, settled, temperature_range, zeros
 from piezo_sym.analysis.curves import Curve, CurvePoint, folds, trace
-from piezo_sym.analysis.repeating import Driven, refuse_not_following
-from piezo_sym.analysis.stroboscope import Stroboscope, stroboscope
+from piezo_sym.analysis.stroboscope import Driven, Stroboscope, refuse_unperiodic, stroboscope
+from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import FloatArray, calling, positive_range
 from piezo_sym.run.module import GeneratedModule, checked
 from piezo_sym.run.parameters import LaneValue
 
 STEPS = 256  # per period
 SAME = 1e-3  # zeros closer than this in log T count as one
+FREQUENCIES = 33  # checked in a range of frequencies, ends included
+FOLLOW = "let the inputs follow the frequency"
+DRIVEN = "a function of the frequency in Hz, such as lambda f: {'V_in': sine(100, f)}"
 
 
 @final
@@ -133,7 +136,7 @@ def steady_branches(
     give a point's frequency to `periodic_steady_state`.
     """
     low, high = positive_range(frequencies, "steady_branches.frequencies", "Hz")
-    refuse_not_following(checked(module), inputs, low, high)
+    _refuse_not_following(checked(module), inputs, low, high)
     strobe = stroboscope(module, inputs, low, parameters, initial, STEPS)
     span = np.log([[low, high], temperature_range(strobe, temperatures)])
     curves: list[Curve] = []
@@ -145,6 +148,14 @@ def steady_branches(
         curves.append(tuple(exact.get(n, point) for n, point in enumerate(curve)))
     jumps = (_jump(strobe, curves, point, up) for _, point, up in ends)
     return Branches(tuple(curves), tuple(jumps))
+
+
+def _refuse_not_following(module: GeneratedModule, inputs: Driven, low: float, high: float) -> None:
+    """Raise `UsageError` if inputs do not repeat with each frequency from `low` to `high` [Hz]."""
+    if not callable(inputs):
+        raise UsageError(f"{quote(inputs)} is no function", "steady_branches.inputs", DRIVEN)
+    for f in np.geomspace(low, high, FREQUENCIES).tolist():
+        refuse_unperiodic(module, inputs(f), f, FOLLOW)
 
 
 def _curves(strobe: Stroboscope, span: FloatArray) -> Iterator[Curve]:

@@ -11,7 +11,7 @@ conserves, such as the difference in length of parallel springs, keep their init
 other states of rest are near, as stops slip or currents circulate in dead zones, a run decides.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isnan
 from typing import Any, final
@@ -23,14 +23,10 @@ from piezo_sym.analysis.rest import ROUND_OFF, RestSearch
 from piezo_sym.analysis.settling import Held, Rest, followed
 from piezo_sym.errors import RunError, UsageError, listing, quote
 from piezo_sym.run.checks import FloatArray, calling, known_keys, number
-from piezo_sym.run.guard import check_start
+from piezo_sym.run.guard import check_start, stop_rows
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import GeneratedModule, by_name, checked, names_elsewhere, row_name
-from piezo_sym.run.parameters import (
-    LaneValue,
-    read_initial,
-    read_parameters,
-)
+from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
 from piezo_sym.run.system import DrivenModule
 
 WHERE = "operating_point"
@@ -139,13 +135,14 @@ def operating_point(
     p = read_parameters(checked(module), parameters)
     u = read_constants(module, inputs)
     start = read_initial(module, p, u, initial)
-    held = Held.of(module, p, start, temperatures, f"{WHERE}.temperatures")
-    free = np.setdiff1d(np.arange(start.size), held.entropies)
     system = DrivenModule(module, p, read_inputs(module, by_name(module.INPUTS, p, u), 1.0))
+    held = Held.of(system, start, temperatures, f"{WHERE}.temperatures")
+    free = np.setdiff1d(np.arange(start.size), held.entropies)
     check_start(system, start)
-    search = RestSearch.of(system, u, start, free)
+    stops = stop_rows(module, p, start, u)
+    search = RestSearch(system, u, free, free, np.eye(start.size)[:, free], stops)
     rest = held.rest(search, start)
-    _refuse_open_bodies(module, p, rest.x, rest.directions, held.bodies)
+    _refuse_open_bodies(rest, held)
     return _described(followed(rest, search, start), parameters or {}, held)
 
 
@@ -163,25 +160,15 @@ def read_constants(
     return np.array([number(values.get(name, default[name]), f"{where}.{name}") for name in names])
 
 
-def _refuse_open_bodies(
-    module: GeneratedModule,
-    p: Any,
-    x: FloatArray,
-    directions: FloatArray,
-    held: Collection[int],
-) -> None:
-    """Raise `RunError` if the temperature of a body that is free differs between states of rest.
-
-    `directions` (n, k) lead to other states of rest; stores may change along them.
-    """
-    if not directions.any():
-        return
+def _refuse_open_bodies(rest: Rest, held: Held) -> None:
+    """Raise `RunError` if the temperature of a body that is free differs between states of rest."""
+    module, p, x = rest.search.module, rest.search.system.parameters, rest.x[:, None]
     ahead, behind = (
-        np.asarray(module.temperatures(x[:, None] + step * directions, p)) for step in (STEP, -STEP)
+        np.asarray(module.temperatures(x + step * rest.directions, p)) for step in (STEP, -STEP)
     )
     change = np.abs(ahead - behind) / (STEP * (ahead + behind))
     for n, body in enumerate(module.BODIES):
-        if np.any(change[n] > SAME) and n not in held:
+        if np.any(change[n] > SAME) and n not in held.bodies:
             what = f"rest leaves the temperature of '{body.name}' open: it depends on the way there"
             call = f"operating_point(..., temperatures={{'{body.name}': ...}})"
             remedy = f"hold it: {call}, for linearize as 'at'; or simulate() until it rests"
@@ -196,7 +183,7 @@ def _described(rest: Rest, parameters: Mapping[str, LaneValue], held: Held) -> O
     names = [module.BODIES[body].name for body in held.bodies]
     given = zip(names, held.entropies, strict=True)
     holding = {name: -temperatures[name] * float(rates[row]) for name, row in given}
-    jacobian = held.jacobian(module, p, x, search.jacobian(x))
+    jacobian = held.jacobian(search, x)
     eigenvalues = np.linalg.eigvals(jacobian[np.ix_(search.free, search.free)])
     margin = ROUND_OFF * float(np.max(np.abs(eigenvalues), initial=0.0))
     y = np.asarray(module.outputs(x, u, p))

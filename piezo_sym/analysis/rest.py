@@ -19,7 +19,7 @@ import numpy as np
 from piezo_sym.analysis.conserved import basis_of, conserved_functions
 from piezo_sym.errors import RunError, listing
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.guard import LIMIT, broken, place, remedies, stop_rows
+from piezo_sym.run.guard import LIMIT, broken, place, remedies
 from piezo_sym.run.module import GeneratedModule, by_name, row_name
 from piezo_sym.run.parameters import temperature_slopes
 from piezo_sym.run.system import DrivenModule
@@ -61,12 +61,6 @@ class RestSearch:
     rows: Rows  # of the coordinates z (k,) among the states
     basis: FloatArray  # dx/dz (n, k)
     stops: Mapping[str, slice]  # the rows of the state of each stop
-
-    @classmethod
-    def of(cls, system: DrivenModule, u: FloatArray, start: FloatArray, free: Rows) -> RestSearch:
-        """Return the search in which all free states are coordinates."""
-        stops = stop_rows(system.module, system.parameters, start, u)
-        return cls(system, u, free, free, np.eye(start.size)[:, free], stops)
 
     @property
     def module(self) -> GeneratedModule:

@@ -11,7 +11,6 @@ begins at the end of runs, each ten times longer than those before, until its re
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, final
 
@@ -23,8 +22,9 @@ from piezo_sym.errors import RunError
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import FloatArray, known_keys, positive
 from piezo_sym.run.guard import place
-from piezo_sym.run.module import GeneratedModule, by_name
+from piezo_sym.run.module import by_name
 from piezo_sym.run.parameters import set_temperature, temperature_slopes
+from piezo_sym.run.system import DrivenModule
 
 #: The rtol of runs; how far the rest may differ between two runs, over the sizes of the states.
 RTOL, SAME = 1e-7, 1e-5
@@ -96,15 +96,9 @@ class Held:
     temperatures: FloatArray
 
     @classmethod
-    def of(
-        cls,
-        module: GeneratedModule,
-        p: Any,
-        x: FloatArray,
-        given: Mapping[str, float] | None,
-        where: str,
-    ) -> Held:
+    def of(cls, system: DrivenModule, x: FloatArray, given: Any, where: str) -> Held:
         """Return the bodies held at `given` temperatures; their entropies in x (n,) are set."""
+        module, p = system.module, system.parameters
         names = [record.name for record in module.BODIES]
         values = known_keys(given, names, where)
         bodies = [names.index(name) for name in values]
@@ -119,36 +113,35 @@ class Held:
 
         By Broyden's method: the search for rest moves the other states, on which T may depend.
         """
-        module, p, rows = search.module, search.system.parameters, self.entropies
-        rest = Rest.near(search, start)
-        slope = self._slopes(module, p, rest.x)[:, rows] if rows else np.empty((0, 0))
-        off = self._off(module, p, rest.x)
+        rest, rows = Rest.near(search, start), self.entropies
+        slope = self._slopes(search, rest.x)[:, rows] if rows else np.empty((0, 0))
+        off = self._off(search, rest.x)
         for _ in range(MOST_SEARCHES):
             if np.max(np.abs(off), initial=0.0) <= SAME_T:
                 return rest
             move = -np.linalg.lstsq(slope, off)[0]  # beside a greatest temperature it is singular
             start[rows] += move
             rest, before = Rest.near(search, start), off
-            off = self._off(module, p, rest.x)
+            off = self._off(search, rest.x)
             slope += np.outer(off - before - slope @ move, move) / (move @ move)
         n = int(np.argmax(np.abs(off)))
-        name, T = module.BODIES[self.bodies[n]].name, self.temperatures[n]
+        name, T = search.module.BODIES[self.bodies[n]].name, self.temperatures[n]
         what = f"no state of rest is found at which '{name}' has {T:.9g} K"
         remedy = "hold it at another temperature, or give other inputs"
         raise RunError(what, place(search.system), remedy=remedy)
 
-    def jacobian(self, module: GeneratedModule, p: Any, x: FloatArray, full: FloatArray) -> Any:
-        """Return the Jacobian (n, n) of the rates at constant temperatures, given the full one."""
-        slopes, rows = self._slopes(module, p, x), self.entropies
+    def jacobian(self, search: RestSearch, x: FloatArray) -> Any:
+        """Return the Jacobian (n, n) of the rates at constant temperatures."""
+        full, slopes, rows = search.jacobian(x), self._slopes(search, x), self.entropies
         return full - full[:, rows] @ np.linalg.solve(slopes[:, rows], slopes)
 
-    def _slopes(self, module: GeneratedModule, p: Any, x: FloatArray) -> FloatArray:
+    def _slopes(self, search: RestSearch, x: FloatArray) -> FloatArray:
         """Return the relative change (k, n) of each temperature with each state."""
-        slopes = temperature_slopes(module, p, x)[self.bodies]
+        slopes = temperature_slopes(search.module, search.system.parameters, x)[self.bodies]
         return np.asarray(slopes / self.temperatures[:, None])
 
-    def _off(self, module: GeneratedModule, p: Any, x: FloatArray) -> FloatArray:
-        found = np.asarray(module.temperatures(x, p))[self.bodies]
+    def _off(self, search: RestSearch, x: FloatArray) -> FloatArray:
+        found = np.asarray(search.module.temperatures(x, search.system.parameters))[self.bodies]
         return np.asarray(found / self.temperatures - 1)
 
 

@@ -259,7 +259,8 @@ def _refuse_residual(strobe: Stroboscope, state: SteadyState, rtol: float) -> No
 def _described(strobe: Stroboscope, x: FloatArray, slope: FloatArray) -> SteadyState:
     """Return the record of the state x (n,), with a period by adaptive steps."""
     orbit = strobe.run(x, times=SAMPLES + 1, rtol=ORBIT_RTOL)
-    states = strobe.states_of(orbit)
+    values = [orbit[record.name].values.T for record in strobe.module.STATES]
+    states = np.concatenate([np.atleast_2d(value) for value in values])
     T = np.asarray(orbit[f"T_{strobe.module.BODIES[0].name}"].values, dtype=float)
     mean, coldest, hottest = over_period(T)
     size = strobe.look(x).size

@@ -6,13 +6,14 @@ period later.
 
     x' = P(x; f)        a periodic steady state is a fixed point of P
 
-Every period has the same number of steps, so that P is smooth in x and f: with adaptive steps it
-would have small jumps.  Both balances hold exactly.
+Inputs that do not repeat are refused.  Every period has the same number of steps, which resolve
+every input, so that P is smooth in x and f: with adaptive steps it would have small jumps.  Both
+balances hold exactly.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias, final
@@ -20,14 +21,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 import numpy as np
 
 from piezo_sym.analysis.conserved import conserved_functions
-from piezo_sym.analysis.repeating import Driven, refuse_unperiodic, steps_needed
-from piezo_sym.errors import RunError, UsageError
+from piezo_sym.errors import RunError, UsageError, quote
 from piezo_sym.run import simulate
 from piezo_sym.run.checks import FloatArray, known_keys
 from piezo_sym.run.collocation import METHOD, FixedStep, collocate
 from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.guard import check_inputs, check_start
-from piezo_sym.run.inputs import Inputs, read_inputs
+from piezo_sym.run.inputs import Inputs, InputValue, as_signal, read_inputs
 from piezo_sym.run.module import GeneratedModule, by_name, checked, held
 from piezo_sym.run.parameters import (
     LaneValue,
@@ -37,18 +37,26 @@ from piezo_sym.run.parameters import (
     refuse_run,
     set_temperature,
 )
+from piezo_sym.run.samples import Samples
 from piezo_sym.run.system import DrivenModule
 
 if TYPE_CHECKING:
     import xarray
 
 Rows: TypeAlias = np.ndarray[tuple[int], np.dtype[np.bool_]]
+Driven: TypeAlias = Callable[[float], Mapping[str, InputValue]]
 
 SAMPLES = 16  # of a period, for the sizes of states and the mean temperature
 SPREAD = (-2.0, 2.0)  # powers of ten: factors from the sizes of states to random states
 ENTROPY_SPREAD = 1e-2  # factor from the entropy's size to random entropies
 SPARE = 16  # random states beyond the least number
 CONSTANT = 1e-9  # the largest change of a conserved quantity in a period, over the sizes of states
+SAME = 1e-6  # difference of values that repeat, over the input's size
+GOLDEN = 0.6180339887498949
+#: Times at which inputs are evaluated, over the period; irregular, so that no harmonic is missed.
+PROBES = np.sort(np.r_[0.0, np.modf(np.arange(1, 64) * GOLDEN)[0]])
+MOST_STEPS = 1 << 14  # per period: enough for a sine of 2048 cycles in it
+COMMON = "give the frequency that the inputs have in common"
 
 
 @final
@@ -142,11 +150,6 @@ class Stroboscope:
             method=METHOD,
             **options,
         )
-
-    def states_of(self, run: xarray.Dataset) -> FloatArray:
-        """Return the states of a run (n, nt), one row per lane of a bank."""
-        values = [run[record.name].values.T for record in self.module.STATES]
-        return np.concatenate([np.atleast_2d(value) for value in values])
 
     def named(self, x: FloatArray) -> dict[str, LaneValue]:
         """Return a state x (n,) by name, as `simulate` takes it."""
@@ -244,7 +247,7 @@ def stroboscope(
         what = f"model '{module.NAME}' has {len(bodies)} bodies"
         remedy = "simulate until it settles"
         raise UsageError(what, "periodic_steady_state.model", "a model with one body", remedy)
-    refuse_unperiodic(module, inputs_at(frequency), frequency)
+    refuse_unperiodic(module, inputs_at(frequency), frequency, COMMON)
     inputs = read_inputs(module, inputs_at(frequency), 1 / frequency)
     steps = steps_needed(inputs, (record.name for record in module.INPUTS), steps)
     refuse_run(module, initial)
@@ -252,3 +255,39 @@ def stroboscope(
     strobe = Stroboscope(module, inputs_at, frequency, parameters or {}, initial or {}, steps)
     strobe.run(strobe.start, times=2, step=strobe.duration / steps)
     return strobe
+
+
+def refuse_unperiodic(
+    module: GeneratedModule, inputs: Mapping[str, InputValue], frequency: float, remedy: str
+) -> None:
+    """Raise `UsageError`, with this remedy, if an input is not the same one period later."""
+    period = 1 / frequency
+    read_inputs(module, inputs, period)
+    for name, value in (inputs or {}).items():
+        where = f"periodic_steady_state.inputs.{name}"
+        signal = as_signal(value, where)
+        times = PROBES * period
+        if isinstance(signal, Samples):  # samples of one period are taken to repeat
+            times = times[times + period <= signal.times[-1]]
+        now = np.asarray(signal(times))
+        largest = np.max(np.abs(now), initial=0.0)
+        if np.any(np.abs(now - signal(times + period)) > SAME * largest):
+            what = f"{quote(name)} does not repeat after {period:g} s"
+            raise UsageError(what, where, f"an input of {frequency:g} Hz, or a number", remedy)
+
+
+def steps_needed(inputs: Inputs, names: Iterable[str], steps: int) -> int:
+    """Return `steps` per period, doubled until they resolve every input.
+
+    A sine of 512 cycles per period is 0 at each of 256 steps, and of 512: a run would miss it.
+    """
+    period = inputs.duration
+    for name, signal in zip(names, inputs.signals, strict=True):
+        while steps * signal.max_step(period) < period:
+            steps *= 2
+            if steps > MOST_STEPS:
+                what = f"{quote(name)} needs more than {MOST_STEPS} steps in {period:g} s"
+                where = f"periodic_steady_state.inputs.{name}"
+                remedy = "give the greatest frequency that the inputs have in common"
+                raise UsageError(what, where, "an input that moves less in a period", remedy)
+    return steps
