@@ -29,6 +29,7 @@ from piezo_sym.analysis.stroboscope import Period, Rows, Stroboscope
 from piezo_sym.errors import RunError
 from piezo_sym.run.checks import FloatArray, positive_range
 from piezo_sym.run.module import row_name
+from piezo_sym.run.parameters import set_temperature
 
 DIFFERENCE = 1e-4  # step of difference quotients, over the size of the state
 TOLERANCE = 1e-8  # change of a state that repeats, over its size
@@ -60,8 +61,8 @@ class Settled:
 
 def settled(strobe: Stroboscope, T: float, near: FloatArray) -> Settled:
     """Return the settled state at the temperature T, by Newton's method from x = `near` (n,)."""
-    best = x = strobe.at_temperature(near, T)
-    slow = strobe.entropy_row(x)
+    best = x = near.copy()
+    slow = set_temperature(strobe.module, strobe.values, x, 0, T, strobe.where)
     fast = strobe.repeating & (np.arange(x.size) != slow)
     least, move = np.inf, np.zeros(x.size)
     for _ in range(MOST_PERIODS):

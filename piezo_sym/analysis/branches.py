@@ -85,9 +85,9 @@ class Branches:
         """
         lands = {j.frequency: np.inf if np.isnan(j.lands) else j.lands for j in self.jumps}
         rows = [
-            (n, *p.described(), lands.get(p.frequency, np.nan))
+            (n, p.frequency, T.mean, T.coldest, T.hottest, p.stable, lands.get(p.frequency, np.nan))
             for n, curve in enumerate(self.curves)
-            for p in curve
+            for p, T in ((p, p.state.period) for p in curve)
         ]
         columns = np.array(rows, dtype=float).reshape(-1, len(COLUMNS)).T
         return dict(zip(COLUMNS, columns, strict=True))

@@ -46,11 +46,6 @@ class CurvePoint:
         """Whether the body returns to this temperature."""
         return self.rising < 0
 
-    def described(self) -> tuple[float, ...]:
-        """Return frequency, the body's mean, least and greatest temperature, and 1 if stable."""
-        T = self.state.period
-        return self.frequency, T.mean, T.coldest, T.hottest, float(self.stable)
-
 
 Curve: TypeAlias = tuple[CurvePoint, ...]
 

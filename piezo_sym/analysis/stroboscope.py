@@ -35,7 +35,6 @@ from piezo_sym.run.parameters import (
     read_initial,
     read_parameters,
     refuse_run,
-    set_temperature,
 )
 from piezo_sym.run.samples import Samples
 from piezo_sym.run.system import DrivenModule
@@ -107,7 +106,7 @@ class Stroboscope:
     def look(self, x: FloatArray) -> Period:
         """Return the period that begins with the state x (n,) at t = 0."""
         states = self._period(x)
-        size = DrivenModule(self.module, self.values, self.inputs).scale(np.abs(states).max(axis=1))
+        size = self._system.scale(np.abs(states).max(axis=1))
         T = np.asarray(self.module.temperatures(states, self.values))[0]
         return Period(states[:, -1], size, *over_period(T))
 
@@ -222,12 +221,6 @@ class Stroboscope:
     def entropy_row(self, x: FloatArray) -> int:
         """Return the row of the body's entropy."""
         return entropy_row(self.module, self.values, x, 0)
-
-    def at_temperature(self, x: FloatArray, T: float) -> FloatArray:
-        """Return the state x (n,) with the entropy at which the body's temperature is T."""
-        state = x.copy()
-        set_temperature(self.module, self.values, state, 0, T, self.where)
-        return state
 
 
 def stroboscope(
