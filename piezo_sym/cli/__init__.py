@@ -1,4 +1,4 @@
-"""The command ``piezo-sym``: one file per command, one line per error.
+"""The command ``piezo-sym``: a file per command, one for those about specs; one line per error.
 
 Input: the words of a command line.  Output: text, files, and an exit code: 0 success, 1 a required
 property is not proved or a generated file is out of date, 2 the spec or the command is wrong.
@@ -12,8 +12,7 @@ import typer
 
 from piezo_sym.cli.bench import bench
 from piezo_sym.cli.generate import generate
-from piezo_sym.cli.new import new
-from piezo_sym.cli.reference import functions, kinds, schema, units
+from piezo_sym.cli.reference import functions, kinds, new, schema, units
 from piezo_sym.cli.reproduce import reproduce
 from piezo_sym.cli.show import show
 from piezo_sym.cli.simulate import simulate

@@ -1,13 +1,17 @@
-"""``piezo-sym kinds``, ``functions``, ``units``, ``schema``: what a spec may say, with examples."""
+"""``piezo-sym kinds``, ``functions``, ``units``, ``schema``: what a spec may say; ``new``: one."""
 
 import json
+import os
 import re
+from pathlib import Path
 from textwrap import wrap
 from typing import Annotated, Any
 
 import typer
 
 from piezo_sym.cli.output import print_table
+from piezo_sym.errors import FileError, UsageError, quote
+from piezo_sym.files import path_text, write_text
 
 WIDTH = 100
 #: The source of the numbers of equations and assumptions.
@@ -36,7 +40,6 @@ def kinds(
     kind: Annotated[str | None, typer.Argument(metavar="[KIND]", help="One kind, whole.")] = None,
 ) -> None:
     """List the kinds of elements, or show one: its fields, units, signs, an example."""
-    from piezo_sym.errors import UsageError, quote
     from piezo_sym.spec.elements import KINDS
     from piezo_sym.spec.problems import meant_kind
     from piezo_sym.spec.schema import schema
@@ -106,3 +109,27 @@ def schema() -> None:
     from piezo_sym.spec.schema import schema as spec_schema
 
     typer.echo(json.dumps(spec_schema(), indent=2))
+
+
+def new(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="The model's name: letters, digits and _.")
+    ],
+) -> None:
+    """Write NAME.toml into this folder: a commented spec of an actuator, to run and to edit.
+
+    It has a spring, a mass, a damper, a capacitor, a bank of two hysterons, a transducer, a body
+    that they heat, and sources; verify, generate and simulate work on it as it stands. A file that
+    is there already is kept: exit code 2.
+    """
+    from piezo_sym.spec.load import starter
+
+    path = Path(f"{name}.toml")
+    text = starter(name, "NAME")
+    if os.path.lexists(path):  # also true of a broken link, which must not be written through
+        remedy = "give another name, or move the file away"
+        raise FileError("is there already", path_text(path), remedy=remedy)
+    write_text(path, text)
+    typer.echo(f"{path}")
+    typer.echo(f"  piezo-sym verify {path}")
+    typer.echo(f'  piezo-sym simulate {path} --duration 0.1 --input "V_in=sine(100, 50)"')
