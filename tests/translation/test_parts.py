@@ -7,7 +7,7 @@ import pytest
 
 from piezo_sym import codegen, derive, layered, load
 from piezo_sym.codegen import collocation_of, lower
-from piezo_sym.codegen.c.order import Write
+from piezo_sym.codegen.c.lines import Write
 from piezo_sym.codegen.c.parts import in_parts
 from piezo_sym.codegen.program import Described, Quantity
 from piezo_sym.expressions.tree import Sym

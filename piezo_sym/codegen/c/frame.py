@@ -10,8 +10,7 @@ from typing import final
 
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.c.head import comment, declaration
-from piezo_sym.codegen.c.lines import Words, indented, stage_lines, used_only, write_lines
-from piezo_sym.codegen.c.order import Write, stages
+from piezo_sym.codegen.c.lines import Words, Write, computing, indented, used_only, write_lines
 from piezo_sym.codegen.c.parts import in_parts
 from piezo_sym.codegen.layout import Places, places
 from piezo_sym.codegen.program import Described, OutputRow, Program, Quantity, needed
@@ -30,6 +29,7 @@ class FunctionFrame:
     words: Mapping[str, str]  # the C name of each argument, and of the printer's own variables
     lines: Words
     taken: Collection[str]  # every name in use
+    known: Collection[str] = ()  # names that bodies define themselves, although arguments hold them
 
     def function(
         self,
@@ -37,23 +37,15 @@ class FunctionFrame:
         arguments: Sequence[str],
         doc: str,
         body: Sequence[str],
-        *,
         local: Sequence[Definition] = (),
-        known: Collection[str] = (),
     ) -> str:
-        """Return a function.
-
-        Parameters
-        ----------
-        local : definitions that the body may use, besides those from its arguments.
-        known : names that the body defines itself, although an argument holds them.
-        """
+        """Return a function; `local` definitions are at hand, besides those from its arguments."""
         definitions = [*self.sizes(), *local, *self._parameters()]
         for word in arguments:
             definitions += self._elements(word) if word in self.arrays else []
         unique: dict[str, str] = {}
         for defined, line in definitions:
-            if defined not in known:
+            if defined not in self.known:
                 unique.setdefault(defined, line)
         used = used_only(body, [*unique.items()], [self.words[word] for word in arguments])
         head = declaration(self.program, name, arguments, self.words, self.lines.number)
@@ -70,9 +62,7 @@ class FunctionFrame:
         first: Sequence[str] = (),
         last: Sequence[str] = (),
         roots: Sequence[Expr] = (),
-        lines: Words | None = None,
         local: Sequence[Definition] = (),
-        known: Collection[str] = (),
     ) -> str:
         """Return a function that computes and writes; a large one calls parts, printed before it.
 
@@ -80,7 +70,7 @@ class FunctionFrame:
         ----------
         first, last : the caller's lines, before and after the rest.
         roots : the expressions that these lines need.
-        local, known : as in `function`.
+        local : as in `function`.
         """
         wanted = needed(quantities, [*roots, *(write.value for write in writes)])[0]
         fields = [array for word, array in self.arrays.items() if word != "u"]
@@ -89,13 +79,11 @@ class FunctionFrame:
         given = ", ".join(self.words[word] for word in arguments)
         for n, group in enumerate(groups, 1):
             part, what = f"{name}_part_{n}", f"Part {n} of {len(groups)} of `{name}`"
-            inner = self.computed(quantities, group, lines=lines)
-            texts.append(self.function(part, arguments, what, inner, local=local, known=known))
+            inner = self.computed(quantities, group)
+            texts.append(self.function(part, arguments, what, inner, local))
             calls.append(f"{self.program.name}_{part}({given});")
-        own = [*first, *calls, *self.computed(quantities, left, roots, lines), *last]
-        return "\n\n".join(
-            [*texts, self.function(name, arguments, doc, own, local=local, known=known)]
-        )
+        own = [*first, *calls, *self.computed(quantities, left, roots), *last]
+        return "\n\n".join([*texts, self.function(name, arguments, doc, own, local)])
 
     def sizes(self) -> Iterator[Definition]:
         """Yield the sizes of banks."""
@@ -143,14 +131,11 @@ class FunctionFrame:
         quantities: Sequence[Quantity],
         writes: Sequence[Write],
         roots: Sequence[Expr] = (),
-        lines: Words | None = None,
     ) -> list[str]:
         """Return the lines that compute what `writes` and `roots` need, and write."""
-        words = lines or self.lines
         wanted = needed(quantities, [*roots, *(write.value for write in writes)])[0]
-        order = stages(wanted, writes, self.program.counts)
-        body = [line for stage in order for line in stage_lines(stage, words)]
-        last = [line for w in writes if not w.bank for line in write_lines(w, words)]
+        body = [*computing(wanted, writes, self.program.counts, self.lines)]
+        last = [line for w in writes if not w.bank for line in write_lines(w, self.lines)]
         return [*body, *(["/* result */"] if last and body else []), *last]
 
 

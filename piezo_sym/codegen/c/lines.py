@@ -1,6 +1,6 @@
-"""Statements of C: definitions, and loops over lanes.
+"""Statements of C: definitions, loops over the lanes of banks, and what they write.
 
-Input: stages of a function.  Output: lines of C99.  A function defines only what it uses.
+Input: quantities and `Write`s.  Output: lines of C99.  A function defines only what it uses.
 """
 
 import re
@@ -8,25 +8,46 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import final
 
-from piezo_sym.codegen.c.order import LaneLoop, LoopStage, Write
 from piezo_sym.codegen.c.style import (
     c_piece,
     c_style,
-    is_constant,
     real_style,
     widened,
     with_branches,
 )
 from piezo_sym.codegen.layout import term_lines
-from piezo_sym.codegen.program import Quantity
+from piezo_sym.codegen.program import Limit, Quantity, bank_of, needed
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.text import Style, piece, write_comparison
-from piezo_sym.expressions.tree import Add, Expr, If, LaneSum
+from piezo_sym.expressions.tree import Add, Expr, If, LaneSum, names
 
 WIDTH = 96
 #: Calls that compilers do not vectorise; a loop with such a call gets no directive.
 _ALONE = "|".join(record.in_c for record in RECORDS.values() if record.transcendental)
 LIBRARY = re.compile(rf"\b(?:{_ALONE}|pow)(?:_of)?\(")
+
+
+@final
+@dataclass(frozen=True)
+class Write:
+    """A value and its target, a text; `bank` if there is one per lane.
+
+    `how` is "=", "+=", or "min" for the minimum over the lanes.
+    """
+
+    target: str
+    value: Expr
+    bank: str | None = None
+    how: str = "="
+
+
+def least_over_lanes(
+    array: str, limits: Iterable[Limit], lanes: Mapping[str, str]
+) -> Iterator[Write]:
+    """Yield the writes of the margins of some conditions."""
+    for n, limit in enumerate(limits):
+        bank = bank_of(limit.margin, lanes)
+        yield Write(f"{array}[{n}]", limit.margin, bank, "min" if bank else "=")
 
 
 @final
@@ -62,7 +83,7 @@ def statement(target: str, value: Expr, words: Words, lane: str | None = None) -
     """
     parts, style = with_branches(value), words.style(lane)
     text = piece(parts, style)[0]
-    if words.number != "double" and is_constant(value):
+    if words.number != "double" and not names(value):
         text = f"wide({text})"
     if len(target) + len(text) + 10 <= WIDTH or not isinstance(parts, Add | If):
         return [f"{target} {text};"]
@@ -88,6 +109,44 @@ def define(quantity: Quantity, words: Words, lane: str | None = None) -> list[st
     )
 
 
+def computing(
+    quantities: Sequence[Quantity], writes: Sequence[Write], banks: Iterable[str], words: Words
+) -> Iterator[str]:
+    """Yield the lines that compute quantities, and write the rows of banks, stage after stage.
+
+    A value that needs no sum over lanes is of stage 0; one that needs such a sum is of a later
+    stage.  A bank has one loop per stage, which computes the quantities of each lane, adds up the
+    sums and writes the rows of the lane, so that nothing is stored per lane; a quantity that a
+    later loop needs is computed again.
+    """
+    totals = {q.name: q.value for q in quantities if isinstance(q.value, LaneSum)}
+    level: dict[str, int] = {}  # the first stage in which the value of each quantity is available
+    for quantity in quantities:
+        level[quantity.name] = _level(quantity.value, level) + (quantity.name in totals)
+    for n in range(max([0, *(_level(w.value, level) for w in writes), *level.values()]) + 1):
+        shared = (q for q in quantities if not q.bank and q.name not in totals)
+        yield from _definitions((q for q in shared if level[q.name] == n), words)
+        for bank in banks:
+            there = {name: total for name, total in totals.items() if total.bank == bank}
+            sums = {name: total.arg for name, total in there.items() if level[name] == n + 1}
+            rows = [w for w in writes if w.bank == bank and _level(w.value, level) == n]
+            if sums or rows:
+                roots = [*sums.values(), *(w.value for w in rows)]
+                lanes = lane_quantities(quantities, bank, roots)
+                yield from _loop(bank, lanes, sums, rows, words)
+
+
+def _level(value: Expr, level: Mapping[str, int]) -> int:
+    return max((level.get(name, 0) for name in names(value)), default=0)
+
+
+def lane_quantities(
+    quantities: Sequence[Quantity], bank: str, roots: Iterable[Expr]
+) -> tuple[Quantity, ...]:
+    """Return the quantities of one lane that some expressions need, in order."""
+    return needed([q for q in quantities if q.bank == bank], roots)[0]
+
+
 def _definitions(quantities: Iterable[Quantity], words: Words) -> Iterator[str]:
     """Yield definitions, with a comment where the kind of quantity changes."""
     note = ""
@@ -98,26 +157,28 @@ def _definitions(quantities: Iterable[Quantity], words: Words) -> Iterator[str]:
         yield from define(quantity, words)
 
 
-def stage_lines(stage: LoopStage, words: Words) -> Iterator[str]:
-    """Yield the lines of one stage."""
-    yield from _definitions(stage.shared, words)
-    for loop in stage.loops:
-        yield from loop_lines(loop, words)
-
-
-def loop_lines(loop: LaneLoop, words: Words) -> Iterator[str]:
+def _loop(
+    bank: str,
+    lanes: Iterable[Quantity],
+    sums: Mapping[str, Expr],
+    writes: Sequence[Write],
+    words: Words,
+) -> Iterator[str]:
     """Yield a loop over the lanes of a bank, after its initial values."""
-    sums = [words.names[quantity.name] for quantity in loop.sums]
-    parts = [*(["sums over lanes"] if loop.sums else []), *(["result"] if loop.writes else [])]
-    yield f"/* each lane of {loop.bank}: {' and '.join(parts)} */"
+    totals = [words.names[name] for name in sums]
+    parts = [*(["sums over lanes"] if sums else []), *(["result"] if writes else [])]
+    yield f"/* each lane of {bank}: {' and '.join(parts)} */"
     zero = "0.0" if words.number == "double" else "zero"
-    yield from (f"{words.number} {name} = {zero};" for name in sums)
+    yield from (f"{words.number} {name} = {zero};" for name in totals)
     most = "HUGE_VAL" if words.number == "double" else "wide(HUGE_VAL)"
-    yield from (f"{w.target} = {most};" for w in loop.writes if w.how == "min")
-    body = list(_body(loop, words))
+    yield from (f"{w.target} = {most};" for w in writes if w.how == "min")
+    body = [line for quantity in lanes for line in define(quantity, words)]
+    for name, value in sums.items():
+        body += statement(f"{words.names[name]} +=", value, words)
+    body += [line for write in writes for line in write_lines(write, words)]
     if not any(map(LIBRARY.search, body)):
-        yield from _directive(sums, loop.writes)
-    yield f"for (long {words.lane} = 0; {words.lane} < {loop.bank}_count; ++{words.lane}) {{"
+        yield from _directive(totals, writes)
+    yield f"for (long {words.lane} = 0; {words.lane} < {bank}_count; ++{words.lane}) {{"
     yield from indented(body)
     yield "}"
 
@@ -138,16 +199,6 @@ def _directive(sums: Sequence[str], writes: Sequence[Write]) -> Iterator[str]:
         line += f" {name}," if not line.endswith(":") else f"{name},"
     joint = "" if line.endswith(":") else " "
     yield f"{line}{joint}{sums[-1]})"
-
-
-def _body(loop: LaneLoop, words: Words) -> Iterator[str]:
-    for quantity in loop.lanes:
-        yield from define(quantity, words)
-    for quantity in loop.sums:
-        value = quantity.value.arg if isinstance(quantity.value, LaneSum) else quantity.value
-        yield from statement(f"{words.names[quantity.name]} +=", value, words)
-    for write in loop.writes:
-        yield from write_lines(write, words)
 
 
 def write_lines(write: Write, words: Words) -> list[str]:

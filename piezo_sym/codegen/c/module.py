@@ -9,9 +9,16 @@ from typing import final
 
 from piezo_sym.codegen.c.frame import FunctionFrame, ends
 from piezo_sym.codegen.c.head import FUNCTIONS, opening
-from piezo_sym.codegen.c.lines import Words, define, indented, statement
+from piezo_sym.codegen.c.lines import (
+    Words,
+    Write,
+    define,
+    indented,
+    lane_quantities,
+    least_over_lanes,
+    statement,
+)
 from piezo_sym.codegen.c.names import c_names, fresh_names
-from piezo_sym.codegen.c.order import Write, lane_quantities, least_over_lanes
 from piezo_sym.codegen.c.style import helpers
 from piezo_sym.codegen.program import (
     Entry,
@@ -59,7 +66,7 @@ class _Printer:
         for name, fields in counted.items():
             at = self.frame.layout("out", [field.slot for field in fields])
             body = [f"return {at.size};"]
-            yield self.frame.function(name, ("p",), FUNCTIONS[name], body, local=[*ends(at)])
+            yield self.frame.function(name, ("p",), FUNCTIONS[name], body, [*ends(at)])
 
     def function(self, function: ModuleFunction) -> str:
         """Return one function of the module."""

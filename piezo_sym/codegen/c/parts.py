@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import final
 
-from piezo_sym.codegen.c.order import Write
+from piezo_sym.codegen.c.lines import Write
 from piezo_sym.codegen.program import Described, Quantity
 from piezo_sym.expressions.tree import Expr, LaneSum, names
 

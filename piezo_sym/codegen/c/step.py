@@ -13,9 +13,8 @@ from typing import final
 from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.c.frame import Definition, FunctionFrame, ends
 from piezo_sym.codegen.c.head import comment, opening
-from piezo_sym.codegen.c.lines import Words, indented, used_only
+from piezo_sym.codegen.c.lines import Words, Write, indented, least_over_lanes, used_only
 from piezo_sym.codegen.c.names import c_names, fresh_names
-from piezo_sym.codegen.c.order import Write, least_over_lanes
 from piezo_sym.codegen.c.step_parameters import give_text, place_text, record_text
 from piezo_sym.codegen.c.style import calls, powers
 from piezo_sym.codegen.collocation import Collocation
@@ -141,12 +140,12 @@ class _Printer:
         body = self.frame.computed(self.step.stage.quantities, writes)
         doc = "Drives of path functionals: the rates of their coordinates"
         words = ("x", "g", "b", "u", "p", "out")
-        yield self.frame.function("drives", words, doc, body, local=local)
+        yield self.frame.function("drives", words, doc, body, local)
 
     def _of_state(self, name: str, doc: str, rows: Sequence[OutputRow]) -> str:
         writes, local = self.frame.writes("out", rows)
         body = self.frame.computed((), writes)
-        return self.frame.function(name, ("x", "p", "out"), doc, body, local=local)
+        return self.frame.function(name, ("x", "p", "out"), doc, body, local)
 
     def stage(self) -> str:
         """Return the function of a stage: rates, rows of the ledger, switching functions."""
@@ -193,16 +192,11 @@ class _Printer:
         computed = {quantity.name for quantity in self.step.slopes.quantities}
         means = {field.name for field in self.given} & computed
         banks = {name: bank for name, bank in self.banks.items() if name not in means}
-        lines = replace(self.frame.lines, arrays=banks)
-        return self.frame.writing(
-            "slopes",
-            ["x", "g", "b", "u", "p", "out"],
-            "Derivative of the rates by the state, on branches b; the tables tell its entries",
-            self.step.slopes.quantities,
-            writes,
-            lines=lines,
-            known={self.names[name] for name in means},
-        )
+        lines, known = replace(self.frame.lines, arrays=banks), {self.names[name] for name in means}
+        doc = "Derivative of the rates by the state, on branches b; the tables tell its entries"
+        words = ["x", "g", "b", "u", "p", "out"]
+        frame = replace(self.frame, lines=lines, known=known)
+        return frame.writing("slopes", words, doc, self.step.slopes.quantities, writes)
 
     def sizes(self) -> str:
         """Return the function of the sizes of arrays, numbers of lanes and first rows."""

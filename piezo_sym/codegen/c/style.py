@@ -24,7 +24,6 @@ from piezo_sym.expressions.text import (
     piece,
 )
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Div, Expr, If, Mul, Neg, Num, Sym, rebuild
-from piezo_sym.expressions.tree import names as names_in
 
 #: Functions of ``real``; the head of a step defines them for numbers, real.h for vectors, too.
 REALS = {name: f"{record.in_c}_of" for name, record in RECORDS.items() if record.smooth}
@@ -112,11 +111,6 @@ def real_style(plain: Style) -> Style:
 def widened(value: Piece) -> str:
     """Return the text of a value, with numbers as ``real`` of any width."""
     return f"wide({value[0]})" if _CONSTANT.fullmatch(value[0]) else value[0]
-
-
-def is_constant(value: Expr) -> bool:
-    """Return whether an expression is made of numbers alone."""
-    return not names_in(value)
 
 
 def with_branches(node: Expr) -> Expr:
