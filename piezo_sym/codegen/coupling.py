@@ -24,17 +24,6 @@ Place = tuple[int, int]
 
 @final
 @dataclass(frozen=True)
-class PlacedSlope:
-    """A slope and its place: after `shared` numbers, and some rows of lanes of each bank."""
-
-    shared: int
-    lanes: dict[str, int]
-    bank: str | None
-    value: Expr
-
-
-@final
-@dataclass(frozen=True)
 class Bank:
     """The equations of the lanes of a bank."""
 
@@ -42,6 +31,8 @@ class Bank:
     states: tuple[int, ...]  # the states of a lane, by their place among all states
     columns: tuple[int, ...]  # the shared unknowns in a lane's equations
     rows: tuple[int, ...]  # the shared equations in which a lane's states occur
+    #: The slopes in a lane: by its own states, by `columns`, and of `rows` by its states.
+    slopes: tuple[Expr, ...]
 
 
 @final
@@ -66,14 +57,16 @@ class Elimination:
 @final
 @dataclass(frozen=True)
 class StepCoupling:
-    """The structure of a step's equations."""
+    """The structure of a step's equations.
 
-    places: tuple[PlacedSlope, ...]  # the slopes with their places
-    sizes: Mapping[str, int]  # for each bank, the number of rows of slopes of its lanes
+    In the array of slopes, those between shared states come first, then those of each bank, each
+    slope of a bank as a row of lanes.
+    """
+
     #: The shared states, by their place among all states; borders come after them.
     states: tuple[int, ...]
     borders: int  # the number of borders
-    entries: tuple[Place, ...]  # (row, column) of each slope between shared states
+    entries: dict[Place, Expr]  # the slopes between shared states, by (row, column)
     banks: tuple[Bank, ...]  # in the order of the program
     elimination: Elimination  # of the shared unknowns
 
@@ -108,73 +101,53 @@ class StepCoupling:
 
 def coupling_of(program: Program, slopes: Slopes) -> StepCoupling:
     """Return the structure of the equations of a step."""
-    return _Builder(program, slopes.entries).coupling()
+    states = tuple(n for n, state in enumerate(program.states) if not state.bank)
+    index = {state: n for n, state in enumerate(states)}
+    shared = {
+        (index[e.row], index[e.col]): e.value
+        for e in slopes.entries
+        if e.row in index and e.col in index
+    }
+    sums = dict.fromkeys((e.col, outer.right) for e in slopes.entries for outer in e.outer)
+    borders = {key: n for n, key in enumerate(sums, len(states))}
+    banks = []
+    for name in program.counts:
+        own = tuple(n for n, state in enumerate(program.states) if state.bank == name)
+        banks.append(_bank(name, own, slopes.entries, index, borders))
+    meets = [(r, c) for bank in banks for r in bank.rows for c in bank.columns]
+    order = elimination(len(states) + len(borders), [*shared, *meets])
+    return StepCoupling(states, len(borders), shared, tuple(banks), order)
 
 
-@final
-class _Builder:
-    """Finds the shared states, borders and places of slopes."""
-
-    def __init__(self, program: Program, entries: Sequence[Entry]) -> None:
-        self.program, self.entries = program, entries
-        self.bank_of = [state.bank for state in program.states]
-        self.states = tuple(n for n, bank in enumerate(self.bank_of) if not bank)
-        self.index = {state: n for n, state in enumerate(self.states)}
-        self.borders: dict[tuple[int, Expr], int] = {}
-        for entry in entries:
-            for outer in entry.outer:
-                key = (entry.col, outer.right)
-                self.borders.setdefault(key, len(self.states) + len(self.borders))
-
-    def coupling(self) -> StepCoupling:
-        """Return the structure."""
-        shared = [e for e in self.entries if e.row in self.index and e.col in self.index]
-        pairs = [(self.index[e.row], self.index[e.col]) for e in shared]
-        places = [PlacedSlope(n, {}, None, e.value) for n, e in enumerate(shared)]
-        sizes: dict[str, int] = {}
-        banks = []
-        for name in self.program.counts:
-            bank, values = self._bank(name)
-            banks.append(bank)
-            for n, value in enumerate(values):
-                places.append(PlacedSlope(len(shared), {**sizes, name: n}, name, value))
-            sizes[name] = len(values)
-        size = len(self.states) + len(self.borders)
-        meets = [(r, c) for bank in banks for r in bank.rows for c in bank.columns]
-        return StepCoupling(
-            places=tuple(places),
-            sizes=sizes,
-            states=self.states,
-            borders=len(self.borders),
-            entries=tuple(pairs),
-            banks=tuple(banks),
-            elimination=elimination(size, [*pairs, *meets]),
-        )
-
-    def _bank(self, name: str) -> tuple[Bank, list[Expr]]:
-        """Return a bank and its slopes: in a lane, by shared unknowns, and in shared equations."""
-        states = tuple(n for n, bank in enumerate(self.bank_of) if bank == name)
-        in_lane = {(e.row, e.col): e.value for e in self.entries}
-        by_shared: dict[Place, Expr] = {}
-        in_shared: dict[Place, Expr] = {}
-        for e in self.entries:
-            if e.row in states:
-                if e.col in self.index:
-                    by_shared[e.row, self.index[e.col]] = e.value
-                for outer in e.outer:
-                    key = e.row, self.borders[e.col, outer.right]
-                    by_shared[key] = add(by_shared.get(key, ZERO), outer.left)
-            if e.col in states and e.row in self.index:
-                in_shared[self.index[e.row], e.col] = e.value
-        for (col, right), border in self.borders.items():
-            if col in states:
-                in_shared[border, col] = right
-        columns = tuple(sorted({column for _, column in by_shared}))
-        rows = tuple(sorted({row for row, _ in in_shared}))
-        values = [in_lane.get((a, b), ZERO) for a in states for b in states]
-        values += [by_shared.get((a, column), ZERO) for a in states for column in columns]
-        values += [in_shared.get((row, b), ZERO) for row in rows for b in states]
-        return Bank(name, states, columns, rows), values
+def _bank(
+    name: str,
+    states: tuple[int, ...],
+    entries: Sequence[Entry],
+    index: Mapping[int, int],
+    borders: Mapping[tuple[int, Expr], int],
+) -> Bank:
+    """Return a bank; `index` has the numbers of shared states, `borders` those of sums."""
+    in_lane = {(e.row, e.col): e.value for e in entries}
+    by_shared: dict[Place, Expr] = {}
+    in_shared: dict[Place, Expr] = {}
+    for e in entries:
+        if e.row in states:
+            if e.col in index:
+                by_shared[e.row, index[e.col]] = e.value
+            for outer in e.outer:
+                key = e.row, borders[e.col, outer.right]
+                by_shared[key] = add(by_shared.get(key, ZERO), outer.left)
+        if e.col in states and e.row in index:
+            in_shared[index[e.row], e.col] = e.value
+    for (col, right), border in borders.items():
+        if col in states:
+            in_shared[border, col] = right
+    columns = tuple(sorted({column for _, column in by_shared}))
+    rows = tuple(sorted({row for row, _ in in_shared}))
+    values = [in_lane.get((a, b), ZERO) for a in states for b in states]
+    values += [by_shared.get((a, column), ZERO) for a in states for column in columns]
+    values += [in_shared.get((row, b), ZERO) for row in rows for b in states]
+    return Bank(name, states, columns, rows, tuple(values))
 
 
 def elimination(size: int, places: Iterable[Place]) -> Elimination:

@@ -6,7 +6,7 @@ the functions that copy those of a run into a lane of vectors; `run/engine` driv
 are given as numbers: without comparisons, the text holds for vectors too.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import final
 
@@ -185,10 +185,13 @@ class _Printer:
 
     def slopes(self) -> str:
         """Return the Jacobian of the rates, in the places of `coupling`."""
-        writes = []
-        for place in self.coupling.places:
-            target = self._at(place.shared, place.lanes, place.bank)
-            writes.append(Write(f"{self.words['out']}[{target}]", place.value, place.bank))
+        out, lanes, values = self.words["out"], dict[str, int](), self.coupling.entries.values()
+        writes = [Write(f"{out}[{n}]", value) for n, value in enumerate(values)]
+        for bank in self.coupling.banks:
+            for n, value in enumerate(bank.slopes):
+                target = self._at({**lanes, bank.name: n}, self.words["j"])
+                writes.append(Write(f"{out}[{target}]", value, bank.name))
+            lanes[bank.name] = len(bank.slopes)
         computed = {quantity.name for quantity in self.step.slopes.quantities}
         means = {field.name for field in self.given} & computed
         banks = {name: bank for name, bank in self.banks.items() if name not in means}
@@ -214,7 +217,7 @@ class _Printer:
             at = places(slots, f"end_{what}", stage.taken)
             local += ends(at)
             body.append(f"{out}[{n}] = {at.size if slots else 0}; /* {what} */")
-        total = self._at(len(self.coupling.entries), dict(self.coupling.sizes), None)
+        total = self._at({bank.name: len(bank.slopes) for bank in self.coupling.banks})
         body.append(f"{out}[{len(counted)}] = {total}; /* slopes */")
         first, states = len(counted) + 1, range(len(self.program.states))
         body += [f"{out}[{first + n}] = {count}; /* lanes */" for n, count in enumerate(banks)]
@@ -271,10 +274,11 @@ class _Printer:
             yield from table(f"{self.name}_body", self.step.bodies)
             yield END_OF_COSTATES
 
-    def _at(self, shared: int, lanes: dict[str, int], bank: str | None) -> str:
-        """Return the place after `shared` numbers and some rows of lanes."""
+    def _at(self, lanes: Mapping[str, int], lane: str = "") -> str:
+        """Return the place after the shared slopes and some rows of lanes."""
+        shared = len(self.coupling.entries)
         terms = [str(shared)] if shared or not lanes else []
-        for name, rows in lanes.items():
-            if rows:
-                terms.append(f"{rows}*{name}_count" if rows > 1 else f"{name}_count")
-        return " + ".join([*terms, *([self.words["j"]] if bank else [])]) or "0"
+        terms += [
+            f"{n}*{name}_count" if n > 1 else f"{name}_count" for name, n in lanes.items() if n
+        ]
+        return " + ".join([*terms, *filter(None, [lane])]) or "0"
