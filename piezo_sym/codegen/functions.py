@@ -18,7 +18,6 @@ from piezo_sym.network import Driven
 from piezo_sym.spec.elements.ports import (
     Body,
     Conductor,
-    DissipativePort,
     Exchange,
     HeatInput,
     Source,
@@ -199,8 +198,7 @@ def heats_of(q: Quantities) -> tuple[OutputRow, ...]:
 
 def productions_of(q: Quantities) -> tuple[OutputRow, ...]:
     """Return the entropy that each process produces."""
-    ports = q.iphs.circuit.of(DissipativePort, Conductor)
-    parts = zip(ports, q.outputs, q.forces, q.heats, q.iphs.system.heats, strict=True)
+    parts = zip(q.processes, q.outputs, q.forces, q.heats, q.iphs.system.heats, strict=True)
     produced = (
         div(mul(output, force) if isinstance(port, Conductor) else heat, q.costates[n])
         for (_, port), output, force, heat, n in parts

@@ -8,15 +8,15 @@ rate and heat, exact along the step (run/engine/stop.c), and the share of the st
 follows the coordinate.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import final
 
-from piezo_sym.codegen.program import Described, Names, bank_of
+from piezo_sym.codegen.program import Described, Names, bank_of, needed
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.expressions.calculus import add, derivative, div, mul, neg
-from piezo_sym.expressions.tree import ONE, Expr, Sym, names, replaced
-from piezo_sym.spec.elements.ports import Conductor, DissipativePort, Storage
+from piezo_sym.expressions.tree import ONE, Expr, Sym, replaced
+from piezo_sym.spec.elements.ports import DissipativePort, Storage
 
 
 @final
@@ -52,13 +52,12 @@ def paths_of(q: Quantities, new: Names) -> tuple[Path, ...]:
     """Return the stops of a system."""
     stores = {port.state: port for _, port in q.stores if isinstance(port, Storage)}
     paths = []
-    processes = q.iphs.circuit.of(DissipativePort, Conductor)
     limited = [
         (k, placed, port)
-        for k, (placed, port) in enumerate(processes)
+        for k, (placed, port) in enumerate(q.processes)
         if isinstance(port, DissipativePort) and port.limit is not None
     ]
-    seen = _seen(q, (q.drive(k) for k, *_ in limited))
+    seen = needed(q.defined, (q.drive(k) for k, *_ in limited))[1]
     for k, placed, port in limited:
         store, bank = stores[port.state], placed.bank
         assert port.limit is not None
@@ -81,18 +80,6 @@ def paths_of(q: Quantities, new: Names) -> tuple[Path, ...]:
             )
         )
     return tuple(paths)
-
-
-def _seen(q: Quantities, values: Iterable[Expr]) -> set[str]:
-    """Return the names that values depend on, in other quantities, too."""
-    defined, found = {d.name: d.value for d in q.defined}, set[str]()
-    ahead = [name for value in values for name in names(value)]
-    while ahead:
-        name = ahead.pop()
-        if name not in found:
-            found.add(name)
-            ahead += names(defined[name]) if name in defined else ()
-    return found
 
 
 def stage_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:

@@ -34,19 +34,36 @@ class Quantities:
     """The quantities of a system."""
 
     iphs: IPHS
-    defined: tuple[Quantity, ...]  # in an order in which they can be computed
-    costates: tuple[Sym, ...]  # of each state; a body's is its temperature
-    inputs: tuple[Sym, ...]  # of each port
-    #: forces, drives, outputs, heats: of each process, its driving force, the conjugate variable z,
-    #: the output W, and the heat W z.
-    forces: tuple[Expr, ...]
-    drives: tuple[Expr, ...]
-    outputs: tuple[Sym, ...]
-    heats: tuple[Expr, ...]
     limits: tuple[Limit, ...]  # the conditions of the domain
-    taken: frozenset[str]  # every name in use
+    defined: tuple[Quantity, ...] = ()  # in an order in which they can be computed
+    #: forces, drives, heats: of each process, its driving force, the conjugate variable z, and with
+    #: the output W the heat W z.
+    forces: tuple[Expr, ...] = ()
+    drives: tuple[Expr, ...] = ()
+    heats: tuple[Expr, ...] = ()
+    taken: frozenset[str] = frozenset()  # every name in use
     #: The bank of each name with a value per lane that is given, not defined as a quantity.
     given: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def costates(self) -> tuple[Sym, ...]:
+        """The co-state of each state; a body's is its temperature."""
+        return tuple(Sym(costate_name(port)) for _, port in self.stores)
+
+    @cached_property
+    def inputs(self) -> tuple[Sym, ...]:
+        """The input of each port."""
+        return tuple(Sym(port.input) for _, port in self.ports)
+
+    @cached_property
+    def processes(self) -> tuple[tuple[Placed, DissipativePort | Conductor], ...]:
+        """The ports of processes."""
+        return tuple(self.iphs.circuit.of(DissipativePort, Conductor))
+
+    @cached_property
+    def outputs(self) -> tuple[Sym, ...]:
+        """The output W of each process."""
+        return tuple(Sym(port.output) for _, port in self.processes)
 
     @cached_property
     def stores(self) -> tuple[tuple[Placed, Storage | Body], ...]:
@@ -92,44 +109,57 @@ class Quantities:
 
     def drive(self, k: int) -> Expr:
         """Return the rate that drives the slip of process k."""
-        _, port = tuple(self.iphs.circuit.of(DissipativePort, Conductor))[k]
-        given = self.costates, self.inputs
-        rate = add(*slip_rate(self.iphs, getattr(port, "state", ""), k, given, self._names))
+        rate = self.slip_rate(k)
         return self._names.get(rate, rate)
+
+    def slip_rate(self, k: int) -> Expr:
+        """Return the rate of the state that slips in process k, without its own slip."""
+        system, state = self.iphs.system, getattr(self.processes[k][1], "state", "")
+        row = [slot.label for slot in system.states].index(state)
+        full, own = (
+            {place: b for place, b in part.items() if place[1] != k}
+            for part in (system.B.full, system.B.own)
+        )
+        rest = self.product(replace(system.B, full=full, own=own), row, self.outputs)
+        given = (system.J0, self.costates), (system.G, self.inputs)
+        terms = (term for block, factors in given for term in self.product(block, row, factors))
+        return add(*terms, *map(neg, rest))
 
     def product(self, block: LaneMatrix, row: int, factors: Sequence[Expr]) -> Iterator[Expr]:
         """Yield the terms of ``(block @ factors)[row]``, column by column."""
-        return product(block, row, factors, self._names)
+        for c, full, own in block.by_row.get(row, ()):
+            bank, factor = block.cols[c].bank, factors[c]
+            if full != 0:
+                yield mul(coefficient(full), self._names[LaneSum(factor, bank)] if bank else factor)
+            if own != 0:
+                yield mul(coefficient(own), factor)
 
 
 def quantities_of(iphs: IPHS) -> Quantities:
     """Return the quantities of a system."""
-    circuit, system = iphs.circuit, iphs.system
-    new = Names({*circuit.names, *(str(s.name) for s, _ in (*iphs.slopes, *iphs.shares))})
-    costates = tuple(Sym(costate_name(port)) for _, port in circuit.of(Storage, Body))
-    outputs = tuple(Sym(port.output) for _, port in circuit.of(DissipativePort, Conductor))
-    inputs = tuple(Sym(port.input) for _, port in port_order(circuit))
+    system, couplings = iphs.system, iphs.junction.couplings
+    new = Names({*iphs.circuit.names, *(str(s.name) for s, _ in (*iphs.slopes, *iphs.shares))})
     excesses = _excesses(iphs, new)
     laws = _laws(iphs, excesses)
-    limits = tuple(_limits(iphs, excesses))
-    used = {name for law in (*laws.values(), *(m.margin for m in limits)) for name in names(law)}
+    q = Quantities(iphs, tuple(_limits(iphs, excesses)))
+    used = {name for law in (*laws.values(), *(m.margin for m in q.limits)) for name in names(law)}
     excesses = {key: excess for key, excess in excesses.items() if excess.name in used}
     defined = [*_costates(iphs, excesses)]
-    couplings = iphs.junction.couplings
-    defined += sums_in((system.J0, system.B.T, system.G.T, couplings["E"]), costates, new)
+    defined += sums_in((system.J0, system.B.T, system.G.T, couplings["E"]), q.costates, new)
     defined += _junction(iphs, laws)
-    processes = [*_processes(iphs, laws, costates, inputs, _by_value(defined))]
-    forces, drives = tuple(force for _, force, _ in processes), tuple(z for *_, z in processes)
-    heats = tuple(map(mul, outputs, drives))
-    slips = [getattr(port, "rate", "") for _, port in circuit.of(DissipativePort, Conductor)]
+    q = replace(q, defined=tuple(defined))
+    processes = [*_processes(q, laws)]
+    drives = tuple(z for *_, z in processes)
+    heats = tuple(map(mul, q.outputs, drives))
+    slips = [getattr(port, "rate", "") for _, port in q.processes]
     for last in (False, True):  # the rates of slips may use the outputs of the others
         named = zip(processes, slips, strict=True)
         defined += [item for (items, *_), rate in named if bool(rate) is last for item in items]
-    defined += sums_in((system.B, system.D, couplings["W"]), outputs, new)
+    defined += sums_in((system.B, system.D, couplings["W"]), q.outputs, new)
     defined += _totals(iphs, heats, _by_value(defined), new)
-    return Quantities(
-        *(iphs, tuple(defined), costates, inputs, forces, drives, outputs, heats, limits),
-        frozenset(new.taken),
+    forces, taken = tuple(force for _, force, _ in processes), frozenset(new.taken)
+    return replace(
+        q, defined=tuple(defined), forces=forces, drives=drives, heats=heats, taken=taken
     )
 
 
@@ -189,22 +219,17 @@ def _junction(iphs: IPHS, laws: Mapping[str, Expr]) -> Iterator[Quantity]:
 
 
 def _processes(
-    iphs: IPHS,
-    laws: Mapping[str, Expr],
-    costates: Sequence[Sym],
-    inputs: Sequence[Sym],
-    sums: Mapping[Expr, Sym],
+    q: Quantities, laws: Mapping[str, Expr]
 ) -> Iterator[tuple[tuple[Quantity, ...], Expr, Expr]]:
     """Yield the quantities of each process, its driving force and the conjugate variable z."""
-    states, driven = iphs.system.B.T, iphs.system.D.T
-    T = {placed.element: Sym(body.temperature) for placed, body in iphs.circuit.of(Body)}
-    lanes = {c.name for c, slot in zip(costates, iphs.system.states, strict=True) if slot.bank}
-    lanes |= {port.output for placed, port in iphs.circuit.of(DissipativePort) if placed.bank}
-    for k, (placed, port) in enumerate(iphs.circuit.of(DissipativePort, Conductor)):
-        terms = [*product(states, k, costates, sums), *product(driven, k, inputs, sums)]
-        z, defined = add(*terms), list[Quantity]()
+    states, driven = q.iphs.system.B.T, q.iphs.system.D.T
+    lanes = {c.name for c, (placed, _) in zip(q.costates, q.stores, strict=True) if placed.bank}
+    lanes |= {port.output for placed, port in q.processes if placed.bank}
+    for k, (placed, port) in enumerate(q.processes):
+        z = add(*q.product(states, k, q.costates), *q.product(driven, k, q.inputs))
+        defined = list[Quantity]()
         if isinstance(port, Conductor):
-            force: Expr = add(z, neg(T[port.second]))
+            force: Expr = add(z, neg(Sym(q.bodies[port.second].temperature)))
             law = div(mul(port.conductance, force), z)
         else:
             if not isinstance(z, Sym):
@@ -212,7 +237,7 @@ def _processes(
                 z = Sym(port.effort)
             letters: dict[str, Expr] = {port.letter: z}
             if port.rate:
-                rate = add(*slip_rate(iphs, port.state, k, (costates, inputs), sums))
+                rate = q.slip_rate(k)
                 letters[port.rate_letter] = rate if isinstance(rate, Sym) else Sym(port.rate)
                 if not isinstance(rate, Sym):
                     bank = None if lanes.isdisjoint(names(rate)) else placed.bank
@@ -237,18 +262,6 @@ def _totals(
             yield Quantity(new(word), LaneSum(energy.law, energy.bank), None, SUMS)
 
 
-def product(
-    block: LaneMatrix, row: int, factors: Sequence[Expr], sums: Mapping[Expr, Sym]
-) -> Iterator[Expr]:
-    """Yield the terms of ``(block @ factors)[row]``, column by column, `sums` by their names."""
-    for c, full, own in block.by_row.get(row, ()):
-        bank, factor = block.cols[c].bank, factors[c]
-        if full != 0:
-            yield mul(coefficient(full), sums[LaneSum(factor, bank)] if bank else factor)
-        if own != 0:
-            yield mul(coefficient(own), factor)
-
-
 def sums_in(blocks: Sequence[LaneMatrix], factors: Sequence[Sym], new: Names) -> Iterator[Quantity]:
     """Yield the sums over lanes in products of blocks and some factors."""
     entries = ((b.cols[c], c, full) for b in blocks for (_, c), full, _ in b.entries())
@@ -256,23 +269,3 @@ def sums_in(blocks: Sequence[LaneMatrix], factors: Sequence[Sym], new: Names) ->
     for c, bank in sorted(columns.items()):
         if bank:
             yield Quantity(new(f"sum_{factors[c].name}"), LaneSum(factors[c], bank), None, SUMS)
-
-
-def slip_rate(
-    iphs: IPHS,
-    state: str,
-    own: int,
-    given: tuple[Sequence[Sym], Sequence[Sym]],
-    sums: Mapping[Expr, Sym],
-) -> Iterator[Expr]:
-    """Yield the terms of the rate of a state, without those of its own slip, process `own`."""
-    system, (costates, inputs) = iphs.system, given
-    row = [slot.label for slot in system.states].index(state)
-    yield from product(system.J0, row, costates, sums)
-    yield from product(system.G, row, inputs, sums)
-    laws = [port.output for _, port in iphs.circuit.of(DissipativePort, Conductor)]
-    full, lanes = (
-        {at: b for at, b in part.items() if at[1] != own} for part in (system.B.full, system.B.own)
-    )
-    rest = replace(system.B, full=full, own=lanes)
-    yield from (neg(term) for term in product(rest, row, [*map(Sym, laws)], sums))
