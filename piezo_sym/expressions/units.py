@@ -83,29 +83,27 @@ def parse_unit(text: str, where: str = "unit", value: float | None = None) -> Un
     Raises `SpecError` if the text is not of the grammar, no unit, or one with an offset (degC).
     """
     try:
-        return _known(text)
-    except SpecError:  # raised again with the place in the spec
-        return _read(text, where, value)
+        with suppress(RefusedError):
+            return _read(text)
+        return _read(text, value)  # raises again
+    except RefusedError as refused:
+        raise SpecError(refused.what, where, refused.expected, refused.remedy) from None
 
 
 @lru_cache(maxsize=1024)
-def _known(text: str) -> Unit:
-    return _read(text, "unit", None)
-
-
-def _read(text: str, where: str, value: float | None) -> Unit:
+def _read(text: str, value: float | None = None) -> Unit:
     if (plain := text.translate(ASCII)) != text and plain.isascii():
-        _read(plain, where, value)  # raises if the unit is wrong in ASCII, too
-        raise SpecError(f"{quote(text)} is not ASCII", where, "a unit", f"write {quote(plain)}")
+        _read(plain, value)  # raises if the unit is wrong in ASCII, too
+        raise RefusedError(f"{quote(text)} is not ASCII", "a unit", f"write {quote(plain)}")
     factor, dimension = Fraction(1), [Fraction(0)] * len(BASES)
-    names = _terms(text, where)
+    names = _terms(text)
     alone = len(names) == 1 and names[0][1] == 1
-    terms = [(_named(name, where, value, alone, text), power) for name, power in names]
+    terms = [(_named(name, value, alone, text), power) for name, power in names]
     for unit, power in terms:
         factor *= _raised(unit.factor, power)
         dimension = [d + p * power for d, p in zip(dimension, unit.dimension, strict=True)]
     if not factor:
-        raise _no_root(terms, text, where, value)
+        raise _no_root(terms, text, value)
     as_written = all(unit.si == unit.text != "1" for unit, _ in terms)
     si = text if as_written else _spelled([(unit.si, power) for unit, power in terms])
     return Unit(text, si, factor, tuple(dimension))
@@ -122,7 +120,7 @@ def _spelled(terms: Terms) -> str:
     return text
 
 
-def _terms(text: str, where: str) -> Terms:
+def _terms(text: str) -> Terms:
     """Return the names in a unit with their powers, in their order."""
     try:
         return _parsed(text)
@@ -133,7 +131,7 @@ def _terms(text: str, where: str) -> Terms:
         meant = meant.replace("%", "percent")
         with suppress(RefusedError):
             remedy = f"write {quote(meant)}" if meant != text and _parsed(meant) else ""
-        raise SpecError(f"{quote(text)} is not a unit", where, expected, remedy) from None
+        raise RefusedError(f"{quote(text)} is not a unit", expected, remedy) from None
 
 
 def _parsed(text: str) -> Terms:
@@ -168,7 +166,7 @@ def _raised(factor: Fraction, power: Fraction) -> Fraction:
     return root if root**order == size else Fraction(0)
 
 
-def _no_root(terms: list[Any], text: str, where: str, value: float | None) -> SpecError:
+def _no_root(terms: list[Any], text: str, value: float | None) -> RefusedError:
     """Return the error of a unit with roots of factors that are no rational numbers."""
     rooted = [(unit.factor, power) for unit, power in terms if not _raised(unit.factor, power)]
     factor = prod(float(size) ** float(power) for size, power in rooted)
@@ -176,7 +174,7 @@ def _no_root(terms: list[Any], text: str, where: str, value: float | None) -> Sp
     given = f"the value, times {factor:.12g}," if value is None else f"{value * factor:.12g}"
     remedy = f"give {given} in {meant}"
     what = f"unit {quote(text)} has a root of {rooted[0][0]}, which is no exact number"
-    return SpecError(what, where, "a root of coherent SI units, such as Pa**(1/2)", remedy)
+    return RefusedError(what, "a root of coherent SI units, such as Pa**(1/2)", remedy)
 
 
 @cache
@@ -188,7 +186,7 @@ def _registry() -> Any:
 
 
 @lru_cache(maxsize=256)
-def _named(name: str, where: str, value: float | None, alone: bool = True, text: str = "") -> Unit:
+def _named(name: str, value: float | None = None, alone: bool = True, text: str = "") -> Unit:
     """Return one named unit of a text; its coherent spelling drops the prefix (``uF`` gives ``F``).
 
     One with an offset is a temperature if it stands `alone`, else a difference, as in W/degC.
@@ -200,23 +198,23 @@ def _named(name: str, where: str, value: float | None, alone: bool = True, text:
         powers = (*powers, *(0,) * len(BASES))[: len(BASES)]
         return Unit(name, si, scale * factor, tuple(map(Fraction, powers)))
     if _root(name) not in UNITS:
-        raise SpecError(f"unknown unit {quote(name)}", where, remedy=_meant(name, text))
+        raise RefusedError(f"unknown unit {quote(name)}", remedy=_meant(name, text))
     try:
         factor, base = _registry().get_base_units(name)
         origin = _registry().Quantity(Fraction(0), name).to_base_units().magnitude
     except TypeError:  # a logarithm of an exact number: dB, Np
-        raise SpecError(f"unit {quote(name)} is logarithmic", where, "a plain unit") from None
+        raise RefusedError(f"unit {quote(name)} is logarithmic", "a plain unit") from None
     if origin != 0 and alone:
         remedy = "give the value in K (t degC is t + 273.15 K)"
         if value is not None:
             remedy = f"give it in K: {float(Fraction(repr(value)) * factor + origin)}"
-        raise SpecError(f"unit {quote(name)} has an offset", where, "a plain unit", remedy)
+        raise RefusedError(f"unit {quote(name)} has an offset", "a plain unit", remedy)
     if origin != 0:
-        return Unit(name, "K", Fraction(factor), _known("K").dimension)
+        return Unit(name, "K", Fraction(factor), _read("K").dimension)
     left = dict(base.dimensionality)
     dimension = tuple(Fraction(left.pop(DIMENSIONS[unit], 0)) for unit in BASES)
     if left:
-        raise SpecError(f"unit {quote(name)} is not physical", where, remedy=nearest(name, COMMON))
+        raise RefusedError(f"unit {quote(name)} is not physical", remedy=nearest(name, COMMON))
     return Unit(name, _bare(name, Fraction(factor), dimension), Fraction(factor), dimension)
 
 
@@ -267,7 +265,7 @@ def _bare(name: str, factor: Fraction, dimension: tuple[Fraction, ...]) -> str:
     if root and registry.get_base_units(root)[0] == 1:
         symbol = str(registry.get_symbol(root))
         return symbol if symbol.isascii() else root
-    alike = (name for name in COMMON if name != "Hz" and _known(name).dimension == dimension)
+    alike = (name for name in COMMON if name != "Hz" and _read(name).dimension == dimension)
     return next(alike, base_units(dimension))
 
 
@@ -285,8 +283,8 @@ def known_units() -> Iterator[tuple[str, str, str]]:
     """Yield the symbol, the name and the value in coherent SI of each unit that specs may use."""
     for name in _UNITS.split():
         try:
-            unit = _named(name, "", None)
-        except SpecError:  # an offset, a logarithm, a count
+            unit = _named(name)
+        except RefusedError:  # an offset, a logarithm, a count
             continue
         short = str(_registry().get_symbol(name))
         factor = f"{float(unit.factor):.12g} " if unit.factor != 1 else ""
