@@ -10,7 +10,11 @@ from piezo_sym.codegen.c.step_header import c_step_header
 from piezo_sym.codegen.collocation import Collocation, collocation_of
 from piezo_sym.codegen.lower import lower
 from piezo_sym.codegen.numpy.module import numpy_module
-from piezo_sym.codegen.program import Program
+from piezo_sym.codegen.program import Program, blank
+from piezo_sym.codegen.quantities import quantities_of
+from piezo_sym.iphs import IPHS
+from piezo_sym.spec.checks.values import are_all_margins
+from piezo_sym.spec.values import Template
 
 Printer: TypeAlias = Callable[[Program, Collocation], str]
 #: The printer of each file of a module, by the ending of its name after the model's.
@@ -28,4 +32,14 @@ def printed(program: Program, step: Collocation) -> dict[str, str]:
     return {ending: write(program, step) for ending, write in PRINTERS.items()}
 
 
-__all__ = ["PRINTERS", "collocation_of", "lower", "numpy_module", "printed"]
+def template_of(iphs: IPHS) -> Template:
+    """Return the texts that are proved and written for a system, whatever its values are."""
+    q = quantities_of(iphs)
+    texts = printed(blank(lower(iphs, "", q)), collocation_of(iphs, q))
+    tables = iphs.model.parameters, iphs.model.inputs
+    factors = {n: str(entry.dimension.factor) for table in tables for n, entry in table.items()}
+    joined = bool(iphs.junction.joints)
+    return Template(texts, factors, not joined and are_all_margins(iphs.model), joined)
+
+
+__all__ = ["PRINTERS", "collocation_of", "lower", "numpy_module", "printed", "template_of"]

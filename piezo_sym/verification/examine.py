@@ -12,7 +12,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, TypeAlias, final
 
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import template_of
 from piezo_sym.falsify import POINTS, Attack, Hunt, module_from
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs import Prover, Report, Row, Verdict

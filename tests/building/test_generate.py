@@ -10,8 +10,7 @@ import pytest
 
 from piezo_sym import Model, PiezoError, derive, generate, load
 from piezo_sym.build import render
-from piezo_sym.codegen import PRINTERS
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import PRINTERS, template_of
 from piezo_sym.errors import FileError, ProofError, UsageError
 from tests.conftest import full_disk
 
@@ -109,7 +108,7 @@ def test_the_text_is_the_same_for_every_hash_seed(seed, model):
     """But for the line on its proofs, which is made of the report alone."""
     wanted = template_of(derive(model)).filled(model.model_dump())[".py"]
     code = """
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import template_of
 from piezo_sym import derive, load
 model = load("piezo_stack")
 print(template_of(derive(model)).filled(model.model_dump())[".py"], end="")

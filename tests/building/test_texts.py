@@ -7,7 +7,7 @@ import pytest
 
 from piezo_sym import Model, PiezoError, derive, load, verify
 from piezo_sym.build import files_of
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import template_of
 
 HOSTILE = [
     'a "quoted" word',

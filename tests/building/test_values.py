@@ -10,8 +10,7 @@ import pytest
 
 from piezo_sym import Model, derive, load, simulate
 from piezo_sym.build import verdict_line
-from piezo_sym.codegen import collocation_of, lower, printed
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import collocation_of, lower, printed, template_of
 from piezo_sym.errors import PiezoError, SpecError
 from piezo_sym.modules import module_of
 from piezo_sym.spec.source import shipped

@@ -9,7 +9,7 @@ import pytest
 
 from piezo_sym import Model, derive, load
 from piezo_sym.codegen import collocation_of, lower, printed
-from piezo_sym.codegen.c.names import KEPT
+from piezo_sym.codegen.c.style import KEPT
 from piezo_sym.errors import SpecError
 from piezo_sym.run.engine.c_sources import standalone_step
 from piezo_sym.spec.names import check_symbol

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from piezo_sym import derive, load
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import template_of
 from piezo_sym.errors import ContradictionError
 from piezo_sym.falsify import falsify, module_from
 from piezo_sym.spec.load import parse

@@ -20,7 +20,7 @@ from precise import DIGITS, all_measured
 
 from piezo_sym import Model, PiezoError, derive
 from piezo_sym.build import files_of
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import template_of
 from piezo_sym.errors import NetworkError
 from piezo_sym.falsify import module_from
 from piezo_sym.proofs import Verdict, decide, obligations, prove

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from piezo_sym import derive, simulate, verify
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import template_of
 from piezo_sym.expressions.parse import parse_law
 from piezo_sym.proofs import Verdict, decide
 from piezo_sym.spec.load import parse

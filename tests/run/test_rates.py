@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from piezo_sym import Model, load
-from piezo_sym.codegen.c.names import KEPT
+from piezo_sym.codegen.c.style import KEPT
 from piezo_sym.modules import module_of
 from piezo_sym.run.engine.c_sources import c_source, numbers_source
 from piezo_sym.run.engine.compiler import FLAGS, build, compilers

@@ -8,7 +8,7 @@ from test_spec_parse import HOSTILE
 
 from piezo_sym import PiezoError, derive, load, verify
 from piezo_sym.build import files_of, render
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import template_of
 from piezo_sym.expressions import parse as parse_module
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.load import parse

@@ -12,7 +12,7 @@ from contextlib import suppress
 import pytest
 
 from piezo_sym import PiezoError, derive, load, verify
-from piezo_sym.codegen.template import template_of
+from piezo_sym.codegen import template_of
 from piezo_sym.errors import ProofError, SpecError
 from piezo_sym.processes import Worker, beside
 from piezo_sym.proofs import Report, Verdict

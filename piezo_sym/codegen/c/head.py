@@ -7,7 +7,7 @@ changed so that they cannot end one.
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
 
-from piezo_sym.codegen.c.names import PART, c_names, fresh_names
+from piezo_sym.codegen.c.style import PART, c_names, fresh_names
 from piezo_sym.codegen.layout import size_in_words
 from piezo_sym.codegen.program import Described, Program, head_lines
 from piezo_sym.errors import one_line

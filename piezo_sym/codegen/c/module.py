@@ -18,8 +18,7 @@ from piezo_sym.codegen.c.lines import (
     least_over_lanes,
     statement,
 )
-from piezo_sym.codegen.c.names import c_names, fresh_names
-from piezo_sym.codegen.c.style import helpers
+from piezo_sym.codegen.c.style import c_names, fresh_names, helpers
 from piezo_sym.codegen.program import (
     Entry,
     ModuleFunction,

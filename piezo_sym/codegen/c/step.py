@@ -14,9 +14,8 @@ from piezo_sym.algebra.lanes import Slot
 from piezo_sym.codegen.c.frame import Definition, FunctionFrame, ends
 from piezo_sym.codegen.c.head import comment, opening
 from piezo_sym.codegen.c.lines import Words, Write, indented, least_over_lanes, used_only
-from piezo_sym.codegen.c.names import c_names, fresh_names
 from piezo_sym.codegen.c.step_parameters import give_text, place_text, record_text
-from piezo_sym.codegen.c.style import calls, powers
+from piezo_sym.codegen.c.style import c_names, calls, fresh_names, powers
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
 from piezo_sym.codegen.layout import places

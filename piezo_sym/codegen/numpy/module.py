@@ -11,9 +11,8 @@ from itertools import accumulate
 from typing import final
 
 from piezo_sym.codegen.layout import Places, places, size_in_words, term_lines
-from piezo_sym.codegen.numpy.divisors import divisors
 from piezo_sym.codegen.numpy.head import RATES, head
-from piezo_sym.codegen.numpy.style import NUMPY, numpy_text
+from piezo_sym.codegen.numpy.style import NUMPY, divisors, numpy_text
 from piezo_sym.codegen.program import (
     Entry,
     ModuleFunction,
