@@ -6,9 +6,8 @@ with the number of banks, not with its square.
 """
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
@@ -26,28 +25,12 @@ class Places:
     """The places of slots in a vector."""
 
     slots: Sequence[Slot]  # one per row, or one for the rows of a bank
-    #: Names of the ends of banks, by slot number; empty if sizes are added up in each index.
-    ends: dict[int, str] = field(default_factory=dict)
-
-    def position(self, n: int) -> str:
-        """Return the place of the first row of slot n; for n = len(slots), the size."""
-        return self._positions[n]
-
-    @cached_property
-    def _positions(self) -> tuple[str, ...]:
-        positions, fixed, sizes = ["0"], 0, list[str]()
-        for n, slot in enumerate(self.slots):
-            if slot.bank and self.ends:
-                fixed, sizes = 0, [self.ends[n]]
-            else:
-                fixed += slot.bank is None
-                sizes += [f"{slot.bank}_count"] if slot.bank else []
-            positions.append(_sum(fixed, sizes))
-        return tuple(positions)
+    positions: tuple[str, ...]  # of the first row of each slot; the last is the size
+    ends: Mapping[str, str]  # names of the ends of banks, and these; empty if indices are sums
 
     def bounds(self, n: int) -> tuple[str, str]:
         """Return the places of slot n's first row, and of that after its last."""
-        return self.position(n), self.position(n + 1)
+        return self.positions[n], self.positions[n + 1]
 
     def index(self, n: int) -> str:
         """Return the index of slot n: a number, or a slice for a bank."""
@@ -57,26 +40,26 @@ class Places:
     @property
     def size(self) -> str:
         """The number of rows."""
-        return self.position(len(self.slots))
+        return self.positions[-1]
 
     def definitions(self) -> Iterator[str]:
         """Yield the lines that define the ends, in order."""
-        before: list[str] = []
-        passed = 0
-        for n, name in self.ends.items():
-            yield f"{name} = {_sum(n - passed, [*before, f'{self.slots[n].bank}_count'])}"
-            before, passed = [name], n + 1
+        yield from (f"{name} = {end}" for name, end in self.ends.items())
 
 
 def places(slots: Sequence[Slot], word: str, taken: Collection[str]) -> Places:
     """Return the places of slots; ends are named after `word` and the slot."""
-    banks = {n: slot for n, slot in enumerate(slots) if slot.bank}
-    if len(banks) <= SPELLED:
-        return Places(slots)
-    new = Names(taken)
-    return Places(
-        slots, {n: new(f"{word}_{slot.label.replace('.', '_')}") for n, slot in banks.items()}
-    )
+    named, new = sum(slot.bank is not None for slot in slots) > SPELLED, Names(taken)
+    positions, ends, fixed, sizes = ["0"], dict[str, str](), 0, list[str]()
+    for slot in slots:
+        fixed += slot.bank is None
+        sizes += [f"{slot.bank}_count"] if slot.bank else []
+        if slot.bank and named:
+            name = new(f"{word}_{slot.label.replace('.', '_')}")
+            ends[name] = _sum(fixed, sizes)
+            fixed, sizes = 0, [name]
+        positions.append(_sum(fixed, sizes))
+    return Places(slots, tuple(positions), ends)
 
 
 def size_in_words(slots: Sequence[Slot]) -> str:

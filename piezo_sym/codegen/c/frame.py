@@ -101,7 +101,7 @@ class FunctionFrame:
         at = self.layout(word, [field.slot for field in fields])
         yield from ends(at)
         for n, field in enumerate(fields):
-            name, place = self.lines.names[field.name], at.position(n)
+            name, place = self.lines.names[field.name], at.positions[n]
             pointer = f"const {number} *restrict {name} = {array} + {place};"
             yield name, pointer if field.bank else f"const {number} {name} = {array}[{place}];"
 
@@ -121,7 +121,7 @@ class FunctionFrame:
 
     def place(self, at: Places, n: int, lane: str = "") -> str:
         """Return the place of slot n; for a bank, in lane `lane`, or else in the loop's lane."""
-        first, lane = at.position(n), lane or self.words["j"]
+        first, lane = at.positions[n], lane or self.words["j"]
         if not at.slots[n].bank:
             return first
         return lane if first == "0" else f"{first} + {lane}"
@@ -141,4 +141,4 @@ class FunctionFrame:
 
 def ends(at: Places) -> Iterator[Definition]:
     """Yield the definitions of the ends of banks that have names."""
-    yield from ((line.split()[0], f"const long {line};") for line in at.definitions())
+    yield from ((name, f"const long {name} = {end};") for name, end in at.ends.items())

@@ -222,7 +222,7 @@ class _Printer:
         body += [f"{out}[{first + n}] = {count}; /* lanes */" for n, count in enumerate(banks)]
         at = places(counted["states"], "end_states", stage.taken)
         first += len(banks)
-        body += [f"{out}[{first + n}] = {at.position(n)}; /* first row */" for n in states]
+        body += [f"{out}[{first + n}] = {at.positions[n]}; /* first row */" for n in states]
         if stage.bends:
             at = places([row.slot for row in stage.bends], "end_bends", stage.taken)
             local += ends(at)

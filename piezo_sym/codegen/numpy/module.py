@@ -208,7 +208,7 @@ class _Printer:
         slots = [row.slot for row in function.rows]
         if slots == self.states.slots:
             return self.states
-        return places(slots, "end", [*self.program.taken, *self.states.ends.values()])
+        return places(slots, "end", [*self.program.taken, *self.states.ends])
 
     def _entry(self, entry: Entry) -> Iterator[str]:
         rows, cols = self.states.slots[entry.row], self.states.slots[entry.col]
@@ -225,7 +225,7 @@ class _Printer:
         if same:
             first, last = self.states.bounds(entry.row)
             yield f"{self.index} = np.arange({first}, {last})"
-            second = self.states.position(entry.col)
+            second = self.states.positions[entry.col]
             shift = "" if entry.row == entry.col else f" + ({second} - ({first}))"
             place = f"{self.index}, {self.index}{shift}"
         lines = _assignment(f"{self.out}[{place}]", numpy_text(entry.value), entry.value)
