@@ -61,40 +61,28 @@ def switched_values(
     compared_names : quantities whose choices are made by comparisons all the same.
     """
     switches = _Switches(dict(lanes), new)
-    values = list[Quantity]()
     for quantity in quantities:
-        values += switches.quantity(quantity, by_branch=quantity.name not in compared_names)
+        if quantity.name in compared_names:
+            value = compared(quantity.value)
+        else:
+            value = switches.by_branches(quantity.value)
+            if not isinstance(value, If):
+                value = switches.with_named_choices(value, quantity)
+        switches.values.append(replace(quantity, value=value))
     switched = tuple(replace(r, value=switches.by_branches(r.value)) for r in rows)
     bends = tuple(switches.bends(means))
-    values += switches.new_quantities()
     met = tuple(switches.by_condition.values())
-    return SwitchedValues(tuple(values), switched, met, bends, switches.lanes)
+    return SwitchedValues(tuple(switches.values), switched, met, bends, switches.lanes)
 
 
 @final
 class _Switches:
-    """The switches met so far."""
+    """The switches met so far, and the values, each after the switching functions it needs."""
 
     def __init__(self, lanes: dict[str, str], new: Names) -> None:
         self.lanes, self.new = lanes, new
         self.by_condition: dict[Cmp, Switch] = {}
-        self.defined: list[Quantity] = []
-
-    def quantity(self, quantity: Quantity, *, by_branch: bool) -> Iterator[Quantity]:
-        """Yield a quantity with choices by branches, after the switching functions it needs."""
-        if not by_branch:
-            yield replace(quantity, value=compared(quantity.value))
-            return
-        value = self.by_branches(quantity.value)
-        if not isinstance(value, If):
-            value = self._with_named_choices(value, quantity)
-        yield from self.new_quantities()
-        yield replace(quantity, value=value)
-
-    def new_quantities(self) -> list[Quantity]:
-        """Return the quantities defined since the last call."""
-        defined, self.defined = self.defined, []
-        return defined
+        self.values: list[Quantity] = []
 
     def by_branches(self, value: Expr) -> Expr:
         """Return a value whose choices are made by branches."""
@@ -103,6 +91,14 @@ class _Switches:
             case If(then, condition, other):
                 return If(then, self._branch(condition), other)
         return inner
+
+    def with_named_choices(self, value: Expr, quantity: Quantity) -> Expr:
+        """Return a value whose choices are quantities of their own."""
+        if not isinstance(value, If):
+            return rebuild(value, lambda part: self.with_named_choices(part, quantity))
+        name, bank = self.new(f"chosen_{quantity.name}"), bank_of(value, self.lanes)
+        self._define(Quantity(name, value, bank, quantity.note))
+        return Sym(name)
 
     def bends(self, means: Iterable[Quantity]) -> Iterator[OutputRow]:
         """Yield the functions whose signs change where means have kinks, once each."""
@@ -114,16 +110,8 @@ class _Switches:
                 self._branch(Cmp(">", self.by_branches(value), ZERO))
                 yield OutputRow(Slot(f"bend_{len(met)}", bank_of(value, self.lanes)), value)
 
-    def _with_named_choices(self, value: Expr, quantity: Quantity) -> Expr:
-        """Return a value whose choices are quantities of their own."""
-        if not isinstance(value, If):
-            return rebuild(value, lambda part: self._with_named_choices(part, quantity))
-        name, bank = self.new(f"chosen_{quantity.name}"), bank_of(value, self.lanes)
-        self._define(Quantity(name, value, bank, quantity.note))
-        return Sym(name)
-
     def _define(self, quantity: Quantity) -> None:
-        self.defined.append(quantity)
+        self.values.append(quantity)
         if quantity.bank:
             self.lanes[quantity.name] = quantity.bank
 
