@@ -80,34 +80,18 @@ def head(program: Program, text: str = "") -> str:
     standard = "\n".join(sorted({*STANDARD, *imports} - {""}))
     p, counts = fresh("p", program.taken), "Parameters."
     notes = ["Arrays have shape (n, *batch); values are in SI units."]
-    parts = [
-        '"""'
-        + "\n".join([*head_lines(program, _plain, notes, (p, "Parameters()"), counts), '"""']),
+    lines = head_lines(program, _plain, notes, (p, "Parameters()"), counts)
+    start = [
+        "\n".join([f'"""{lines[0]}', *lines[1:], '"""']),
         f"{standard}\n\nimport numpy as np",
         *definitions[1:],
         f'NAME = "{program.name}"\nSPEC_SHA256 = "{program.sha256}"',
-        RECORDS,
-        "\n".join(_tables(program)),
-        _parameters(program),
     ]
     fixed = sum(field.bank is None for field in program.states)
     banks = (f"p.{field.bank}_count" for field in program.states if field.bank)
-    size = " + ".join([str(fixed), *banks])
-    parts.append(SHAPES.format(size=size, inputs=len(program.inputs)))
-    if program.counts:
-        parts.append(LANES)
-    return _joined(parts)
-
-
-def _joined(parts: Iterable[str]) -> str:
-    """Return blocks separated by one empty line, or by two around classes and functions."""
-    text = ""
-    for part in parts:
-        wide = part.startswith(("class", "@", "def", "_BLOCK", "_Lanes")) or text.rstrip().endswith(
-            "bool"
-        )
-        text += ("\n\n\n" if wide else "\n\n") + part if text else part
-    return text
+    shapes = SHAPES.format(size=" + ".join([str(fixed), *banks]), inputs=len(program.inputs))
+    parts = ["\n\n".join(start), RECORDS, "\n".join(_tables(program)), _parameters(program), shapes]
+    return "\n\n\n".join([*parts, *([LANES] if program.counts else [])])
 
 
 def _plain(text: str) -> str:
