@@ -53,7 +53,6 @@ class Slopes:
 
     quantities: tuple[Quantity, ...]
     entries: tuple[Entry, ...]
-    switches: tuple[Switch, ...]
     taken: frozenset[str]
 
 
@@ -140,4 +139,4 @@ def _slopes(q: Quantities, rates: tuple[OutputRow, ...], means: tuple[Quantity, 
         *(values.rows, q.states, values.quantities, values.lanes, new, q.temperatures)
     )
     quantities = tuple(map(sharp_quantity, (*values.quantities, *derivatives)))
-    return Slopes(quantities, entries, values.switches, frozenset(new.taken))
+    return Slopes(quantities, entries, frozenset(new.taken))

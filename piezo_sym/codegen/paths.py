@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import final
 
-from piezo_sym.codegen.program import Described, Names, bank_of, needed
+from piezo_sym.codegen.program import Described, Names, bank_of, banks_of, needed
 from piezo_sym.codegen.quantities import Quantities
 from piezo_sym.expressions.calculus import add, derivative, div, mul, neg
 from piezo_sym.expressions.tree import ONE, Expr, Sym, replaced
@@ -104,4 +104,4 @@ def slope_quantities(q: Quantities, paths: Sequence[Path]) -> Quantities:
 
 
 def _lanes(paths: Sequence[Path]) -> dict[str, str]:
-    return {field.name: field.bank for path in paths for field in path.given() if field.bank}
+    return banks_of(field for path in paths for field in path.given())

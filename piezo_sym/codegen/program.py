@@ -63,6 +63,11 @@ class Described:
         return Slot(self.name, self.bank)
 
 
+def banks_of(fields: Iterable[Described | Quantity]) -> dict[str, str]:
+    """Return the bank of every name that has a value per lane."""
+    return {field.name: field.bank for field in fields if field.bank}
+
+
 @final
 @dataclass(frozen=True)
 class OutputRow:
@@ -147,9 +152,7 @@ class Program:
 
     def lane_names(self) -> dict[str, str]:
         """Return the bank of every name that has a value per lane."""
-        fields = (*self.parameters, *self.states)
-        lanes = {field.name: field.bank for field in fields if field.bank}
-        return lanes | {item.name: item.bank for item in self.quantities if item.bank}
+        return banks_of((*self.parameters, *self.states, *self.quantities))
 
 
 def blank(program: Program) -> Program:

@@ -12,7 +12,7 @@ from typing import final
 from piezo_sym.algebra.lanes import LaneMatrix
 from piezo_sym.algebra.symbols import coefficient
 from piezo_sym.codegen.differences import with_excess
-from piezo_sym.codegen.program import Described, Limit, Names, Quantity
+from piezo_sym.codegen.program import Described, Limit, Names, Quantity, banks_of
 from piezo_sym.expressions.calculus import add, div, mul, neg
 from piezo_sym.expressions.tree import Call, Expr, LaneSum, Mul, Sym, names
 from piezo_sym.expressions.tree import replace as substituted
@@ -93,9 +93,9 @@ class Quantities:
     @cached_property
     def lanes(self) -> dict[str, str]:
         """The bank of every name that has a value per lane."""
-        lanes = {port.state: placed.bank for placed, port in self.stores if placed.bank}
-        lanes |= {item.name: item.bank for item in self.defined if item.bank}
-        return {**self.iphs.circuit.lane_parameters, **self.given, **lanes}
+        lanes = {**self.iphs.circuit.lane_parameters, **self.given}
+        lanes |= {port.state: placed.bank for placed, port in self.stores if placed.bank}
+        return lanes | banks_of(self.defined)
 
     @cached_property
     def _names(self) -> Mapping[Expr, Sym]:

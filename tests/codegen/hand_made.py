@@ -165,7 +165,7 @@ class HandMade:
         defined = tuple(replace(d, value=put(d.value, mean)) for d in found.quantities)
         entries, derivatives = self._jacobian(rates, defined, found.lanes, q.new)
         quantities = tuple(map(sharp_quantity, (*defined, *derivatives)))
-        return Slopes(quantities, entries, found.switches, frozenset(q.new.taken))
+        return Slopes(quantities, entries, frozenset(q.new.taken))
 
     def _jacobian(self, rates, quantities, lanes, new):
         return jacobian_of(rates, self.fields(), tuple(quantities), lanes, new, {})

@@ -26,6 +26,7 @@ from piezo_sym.codegen.program import (
     OutputRow,
     Program,
     bank_of,
+    banks_of,
     jacobian_roots,
 )
 from piezo_sym.expressions.tree import ZERO, Expr, Neg, Num
@@ -51,8 +52,7 @@ class _Printer:
     def __init__(self, program: Program) -> None:
         self.program, self.lanes, names = program, program.lane_names(), c_names(program)
         words = fresh_names(("x", "u", "p", "out", "n", "j", "l", "left"), program, names)
-        fields = (*program.parameters, *program.states)
-        banks = {field.name: field.bank for field in fields if field.bank}
+        banks = banks_of((*program.parameters, *program.states))
         self.lines = Words(names, banks, words["j"])
         arrays = {"x": program.states, "u": program.inputs}
         self.frame = FunctionFrame(program, arrays, words, self.lines, program.taken)

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.codegen.c.frame import Definition, FunctionFrame, ends
+from piezo_sym.codegen.c.frame import FunctionFrame, ends
 from piezo_sym.codegen.c.head import comment, opening
 from piezo_sym.codegen.c.lines import Words, Write, indented, least_over_lanes, used_only
 from piezo_sym.codegen.c.step_parameters import give_text, place_text, record_text
@@ -19,7 +19,7 @@ from piezo_sym.codegen.c.style import c_names, calls, fresh_names, powers
 from piezo_sym.codegen.collocation import Collocation
 from piezo_sym.codegen.coupling import coupling_of, table
 from piezo_sym.codegen.layout import places
-from piezo_sym.codegen.program import Described, OutputRow, Program
+from piezo_sym.codegen.program import Described, OutputRow, Program, banks_of
 from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import names
 
@@ -106,8 +106,7 @@ class _Printer:
         self.names = c_names(extended)
         words = ("x", "g", "b", "u", "p", "out", "rows", "s", "m", "j")
         self.words = fresh_names(words, extended, self.names)
-        fields = (*program.parameters, *extended.states)
-        self.banks = {field.name: field.bank for field in fields if field.bank}
+        self.banks = banks_of((*program.parameters, *extended.states))
         arrays = {"x": program.states, "g": self.given, "b": self.branches, "u": program.inputs}
         lines = Words(self.names, self.banks, self.words["j"], "real")
         self.frame = FunctionFrame(program, arrays, self.words, lines, extended.taken)
@@ -152,7 +151,7 @@ class _Printer:
         switches = [OutputRow(Slot(s.branch, s.bank), s.value) for s in stage.switches]
         rows = {"s": switches, "out": stage.rates, "rows": stage.booked}
         results = [self.frame.writes(word, values) for word, values in rows.items()]
-        lanes = {**{q.name: q.bank for q in stage.quantities if q.bank}, **self.banks}
+        lanes = banks_of(stage.quantities) | self.banks
         margins = least_over_lanes(self.words["m"], stage.limits, lanes)
         writes = [*(write for group, _ in results for write in group), *margins]
         doc = (
@@ -202,31 +201,23 @@ class _Printer:
 
     def sizes(self) -> str:
         """Return the function of the sizes of arrays, numbers of lanes and first rows."""
-        stage = self.step.stage
-        banks = [f"{bank}_count" for bank in self.program.counts]
+        stage, out, program = self.step.stage, self.words["out"], self.program
         counted = {
-            "states": [field.slot for field in self.program.states],
+            "states": [field.slot for field in program.states],
             "means": [field.slot for field in self.means],
             "branches": [field.slot for field in self.branches],
             "booked": [row.slot for row in stage.booked],
-            "processes": [field.slot for field in self.program.processes],
+            "processes": [field.slot for field in program.processes],
+            "bends": [row.slot for row in stage.bends],
         }
-        out, body, local = self.words["out"], list[str](), list[Definition]()
-        for n, (what, slots) in enumerate(counted.items()):
-            at = places(slots, f"end_{what}", stage.taken)
-            local += ends(at)
-            body.append(f"{out}[{n}] = {at.size if slots else 0}; /* {what} */")
-        total = self._at({bank.name: len(bank.slopes) for bank in self.coupling.banks})
-        body.append(f"{out}[{len(counted)}] = {total}; /* slopes */")
-        first, states = len(counted) + 1, range(len(self.program.states))
-        body += [f"{out}[{first + n}] = {count}; /* lanes */" for n, count in enumerate(banks)]
-        at = places(counted["states"], "end_states", stage.taken)
-        first += len(banks)
-        body += [f"{out}[{first + n}] = {at.positions[n]}; /* first row */" for n in states]
-        if stage.bends:
-            at = places([row.slot for row in stage.bends], "end_bends", stage.taken)
-            local += ends(at)
-            body.append(f"{out}[{first + len(states)}] = {at.size}; /* bends */")
+        at = {what: places(slots, f"end_{what}", stage.taken) for what, slots in counted.items()}
+        *numbers, bends = ((each.size, what) for what, each in at.items())
+        numbers += [(self._at({b.name: len(b.slopes) for b in self.coupling.banks}), "slopes")]
+        numbers += [(f"{bank}_count", "lanes") for bank in program.counts]
+        numbers += [(place, "first row") for place in at["states"].positions[:-1]]
+        numbers += [bends] if stage.bends else []
+        body = [f"{out}[{n}] = {size}; /* {what} */" for n, (size, what) in enumerate(numbers)]
+        local = [end for each in at.values() for end in ends(each)]
         doc = "How many numbers there are of each kind; lanes of each bank; first row of each state"
         p = self.words["p"]
         kept = used_only(body, [*self.frame.sizes(), *local], [p])

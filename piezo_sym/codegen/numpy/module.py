@@ -20,6 +20,7 @@ from piezo_sym.codegen.program import (
     Program,
     Quantity,
     bank_of,
+    banks_of,
     jacobian_roots,
     needed,
 )
@@ -252,7 +253,7 @@ def _names_with_lane_axis(program: Program) -> dict[str, str]:
 
     A value of parameters alone may be one number for all lanes.
     """
-    lanes = {field.name: field.bank for field in program.states if field.bank}
+    lanes = banks_of(program.states)
     for quantity in program.quantities:
         if quantity.bank and bank_of(quantity.value, lanes):
             lanes[quantity.name] = quantity.bank
