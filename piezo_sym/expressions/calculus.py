@@ -77,8 +77,6 @@ def neg(arg: Expr) -> Expr:
 def mul(left: Expr, right: Expr) -> Expr:
     """Return a product: numbers in front, signs outside, factors inside a choice of constants."""
     match left, right:
-        case (Num(a), Num(b)):
-            return Num(a * b)
         case (_, Num(value)):
             return _scaled(value, left)
         case (Num(value), _):
