@@ -96,10 +96,7 @@ def elements_of(
     followers = [inserted(rate, words) for rate in follower_rates(iphs)]
     blocks = zip("EWuR", (q.costates, q.outputs, q.inputs, followers), strict=True)
     given = [(iphs.junction.couplings[kind], factors) for kind, factors in blocks]
-    answers = [
-        add(*(t for block, factors in given for t in q.product(block, n, factors)))
-        for n in range(len(given[0][0].rows))
-    ]
+    answers = [add(*q.terms(n, *given)) for n in range(len(given[0][0].rows))]
     words |= in_words({"answer": answers})
     found = list[ElementRow]()
     for entry in element_rows(iphs):
@@ -115,7 +112,7 @@ def rates_of(q: Quantities) -> tuple[OutputRow, ...]:
         if isinstance(q.stores[n][1], Body):
             value = _entropy_rate(n, q)
         else:
-            terms = [*_structure_terms(n, q), *q.product(q.iphs.system.G, n, q.inputs)]
+            terms = [*_structure_terms(n, q), *q.terms(n, (q.iphs.system.G, q.inputs))]
             value = add(*_shared_first(terms, q))
         rows.append(OutputRow(slot, value))
     return tuple(rows)
@@ -123,8 +120,8 @@ def rates_of(q: Quantities) -> tuple[OutputRow, ...]:
 
 def _structure_terms(n: int, q: Quantities) -> Iterator[Expr]:
     """Yield the terms of a rate from co-states and from outputs of processes."""
-    yield from q.product(q.iphs.system.J0, n, q.costates)
-    yield from (neg(term) for term in q.product(q.iphs.system.B, n, q.outputs))
+    yield from q.terms(n, (q.iphs.system.J0, q.costates))
+    yield from map(neg, q.terms(n, (q.iphs.system.B, q.outputs)))
 
 
 def _shared_first(terms: list[Expr], q: Quantities) -> list[Expr]:
@@ -145,7 +142,7 @@ def _entropy_rate(n: int, q: Quantities) -> Expr:
     ]
     terms = [div(add(*heats), q.costates[n])] if heats else []
     terms += _structure_terms(n, q)
-    return add(*terms, *q.product(q.iphs.system.G, n, _definition_inputs(q)))
+    return add(*terms, *q.terms(n, (q.iphs.system.G, _definition_inputs(q))))
 
 
 def exchanges_of(q: Quantities) -> Iterator[OutputRow]:
@@ -173,7 +170,7 @@ def _outputs(q: Quantities) -> tuple[OutputRow, ...]:
     blocks = (system.G.T, q.costates), (system.D, q.outputs), (system.N, q.inputs)
     for n, (placed, port) in enumerate(q.ports):
         if isinstance(port, Source):
-            value = add(*(t for block, factors in blocks for t in q.product(block, n, factors)))
+            value = add(*q.terms(n, *blocks))
         else:
             value = Sym(q.bodies[port.body].temperature)
         rows.append(OutputRow(Slot(placed.element), value))

@@ -4,7 +4,6 @@ Input: an `IPHS` and the verdict on it.  Output: a `Program`.  Terms are in the 
 processes and inputs; laws keep the spelling of the spec.
 """
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 from piezo_sym.algebra.lanes import Slot
@@ -15,7 +14,7 @@ from piezo_sym.codegen.program import Described, ModuleFunction, Names, OutputRo
 from piezo_sym.codegen.quantities import Quantities, quantities_of
 from piezo_sym.iphs import IPHS
 from piezo_sym.network import Driven
-from piezo_sym.spec.circuit import Circuit, Placed
+from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import Source
 from piezo_sym.spec.tables import banks
 
@@ -47,29 +46,30 @@ def lower(iphs: IPHS, verdict: str, known: Quantities | None = None) -> Program:
 
 def program_of(q: Quantities) -> Program:
     """Return a program without functions, Jacobian, limits and elements."""
-    model = q.iphs.model
+    model, owners = q.iphs.model, q.iphs.circuit.lane_parameters
+    kinds = {label: element.kind for label, element in model.elements.items()}
     return Program(
         name=model.name,
         title=model.model.title,
         source=model.model.source,
         sha256=model.sha256,
-        verdict="",
-        parameters=tuple(_parameters(q.iphs.circuit)),
+        parameters=tuple(
+            Described(n, p.dimension.si, p.doc, owners.get(n)) for n, p in model.parameters.items()
+        ),
         inputs=tuple(Described(n, i.dimension.si, i.doc) for n, i in model.inputs.items()),
         states=q.states,
         outputs=tuple(_output(*pair) for pair in q.ports),
-        processes=tuple(_processes(q.iphs)),
+        processes=tuple(
+            Described(slot.label, "W/K", f"{kinds[slot.label]} '{slot.label}'", slot.bank)
+            for slot in q.iphs.system.processes
+        ),
         bodies=tuple(Described(n, "K", f"temperature of thermal_mass '{n}'") for n in q.bodies),
         defaults={
             **{name: _printed(entry.si) for name, entry in model.parameters.items()},
             **{name: _printed(entry.si) for name, entry in model.inputs.items()},
         },
-        elements=(),
         counts=banks(model),
         quantities=q.defined,
-        functions=(),
-        jacobian=(),
-        limits=(),
         taken=q.taken,
     )
 
@@ -78,19 +78,7 @@ def _printed(value: float | tuple[float, ...]) -> str | tuple[str, ...]:
     return tuple(map(repr, value)) if isinstance(value, tuple) else repr(value)
 
 
-def _parameters(circuit: Circuit) -> Iterator[Described]:
-    owners = circuit.lane_parameters
-    for name, entry in circuit.model.parameters.items():
-        yield Described(name, entry.dimension.si, entry.doc, owners.get(name))
-
-
 def _output(placed: Placed, port: Driven) -> Described:
     if isinstance(port, Source):
         return Described(placed.element, port.units[1], port.doc)
     return Described(placed.element, "K", f"temperature of thermal_mass '{port.body}'")
-
-
-def _processes(iphs: IPHS) -> Iterator[Described]:
-    for process in iphs.system.processes:
-        kind = iphs.model.elements[process.label].kind
-        yield Described(process.label, "W/K", f"{kind} '{process.label}'", process.bank)

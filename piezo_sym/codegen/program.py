@@ -122,7 +122,7 @@ class Limit:
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Program:
     """All that a generated module holds."""
 
@@ -131,7 +131,7 @@ class Program:
     title: str
     source: str
     sha256: str
-    verdict: str
+    verdict: str = ""
     #: parameters, inputs, states, outputs, processes, bodies, elements: fields in their order.
     parameters: tuple[Described, ...]
     inputs: tuple[Described, ...]
@@ -139,15 +139,15 @@ class Program:
     outputs: tuple[Described, ...]
     processes: tuple[Described, ...]
     bodies: tuple[Described, ...]
-    elements: tuple[Described, ...]
+    elements: tuple[Described, ...] = ()
     #: Values of parameters (a tuple: one per lane) and inputs, as they are printed.
     defaults: Mapping[str, str | tuple[str, ...]]
     counts: Mapping[str, int]  # sizes of banks, in order
     quantities: tuple[Quantity, ...]  # in an order in which they can be computed
-    functions: tuple[ModuleFunction, ...]  # what the module offers, with `limits`
+    functions: tuple[ModuleFunction, ...] = ()  # what the module offers, with `limits`
     #: The derivative of `rhs` with respect to the state; an entry that is not listed is zero.
-    jacobian: tuple[Entry, ...]
-    limits: tuple[Limit, ...]
+    jacobian: tuple[Entry, ...] = ()
+    limits: tuple[Limit, ...] = ()
     taken: frozenset[str]  # every name in use, so that printers can add their own
 
     def lane_names(self) -> dict[str, str]:

@@ -120,19 +120,20 @@ class Quantities:
             {place: b for place, b in part.items() if place[1] != k}
             for part in (system.B.full, system.B.own)
         )
-        rest = self.product(replace(system.B, full=full, own=own), row, self.outputs)
-        given = (system.J0, self.costates), (system.G, self.inputs)
-        terms = (term for block, factors in given for term in self.product(block, row, factors))
-        return add(*terms, *map(neg, rest))
+        rest = replace(system.B, full=full, own=own)
+        terms = self.terms(row, (system.J0, self.costates), (system.G, self.inputs))
+        return add(*terms, *map(neg, self.terms(row, (rest, self.outputs))))
 
-    def product(self, block: LaneMatrix, row: int, factors: Sequence[Expr]) -> Iterator[Expr]:
-        """Yield the terms of ``(block @ factors)[row]``, column by column."""
-        for c, full, own in block.by_row.get(row, ()):
-            bank, factor = block.cols[c].bank, factors[c]
-            if full != 0:
-                yield mul(coefficient(full), self._names[LaneSum(factor, bank)] if bank else factor)
-            if own != 0:
-                yield mul(coefficient(own), factor)
+    def terms(self, row: int, *products: tuple[LaneMatrix, Sequence[Expr]]) -> Iterator[Expr]:
+        """Yield the terms of a row of the sum of products ``block @ factors``, column by column."""
+        for block, factors in products:
+            for c, full, own in block.by_row.get(row, ()):
+                bank, factor = block.cols[c].bank, factors[c]
+                if full != 0:
+                    name = self._names[LaneSum(factor, bank)] if bank else factor
+                    yield mul(coefficient(full), name)
+                if own != 0:
+                    yield mul(coefficient(own), factor)
 
 
 def quantities_of(iphs: IPHS) -> Quantities:
@@ -226,7 +227,7 @@ def _processes(
     lanes = {c.name for c, (placed, _) in zip(q.costates, q.stores, strict=True) if placed.bank}
     lanes |= {port.output for placed, port in q.processes if placed.bank}
     for k, (placed, port) in enumerate(q.processes):
-        z = add(*q.product(states, k, q.costates), *q.product(driven, k, q.inputs))
+        z = add(*q.terms(k, (states, q.costates), (driven, q.inputs)))
         defined = list[Quantity]()
         if isinstance(port, Conductor):
             force: Expr = add(z, neg(Sym(q.bodies[port.second].temperature)))
