@@ -91,22 +91,17 @@ def collocation_of(iphs: IPHS, known: Quantities | None = None) -> Collocation:
     elements, own = iphs.model.elements.values(), stage_quantities(q, paths)
     rates = rates_of(own)  # also for slopes, if no path makes them differ
     smooth = slope_quantities(q, paths)
+    bodies = tuple(n for n, (_, port) in enumerate(q.stores) if isinstance(port, Body))
+    lossy = any(isinstance(port, Storage) for _, port in q.stores)
     return Collocation(
         means=tuple(sharp_quantity(replace(m, value=compared(m.value))) for m in means),
         stage=_stage(own, rates, means),
         slopes=_slopes(smooth, rates if smooth is own else rates_of(smooth), means),
-        heated=_heated(q),
-        bodies=tuple(n for n, (_, port) in enumerate(q.stores) if isinstance(port, Body)),
+        heated=bodies[0] if bodies and lossy else -1,
+        bodies=bodies,
         jumps=any(getattr(element, "discontinuous", False) for element in elements),
         paths=paths,
     )
-
-
-def _heated(q: Quantities) -> int:
-    ports = [port for _, port in q.stores]
-    lossy = any(isinstance(port, Storage) for port in ports)
-    bodies = (n for n, port in enumerate(ports) if isinstance(port, Body))
-    return next(bodies, -1) if lossy else -1
 
 
 def _stage(q: Quantities, rates: tuple[OutputRow, ...], means: tuple[Quantity, ...]) -> Stage:
