@@ -63,77 +63,78 @@ class _Printer:
         if function.name == "rhs":
             return f"{RATES}\n\n\n{self._rates(function)}"
         roots = [tree for row in function.rows for tree in (row.listed or (row.value,))]
-        lines = self._opening(function.name, function.arguments, function.doc, function, roots)
+        doc = f"{function.doc}; shape {_shape(function)}"
         if function.scalar:
             value = function.rows[0].value
             zero = f"np.zeros({self.x}.shape[1:])"
             text = f"{value.name}.copy()" if isinstance(value, Sym) else numpy_text(value)
-            lines += [f"return {zero if value == ZERO else text}"]
-            return _body(lines)
+            result = [f"return {zero if value == ZERO else text}"]
+            return self._computing(function.name, function.arguments, doc, roots, result)
         rows = self._rows(function)
-        lines += [] if rows is self.states else rows.definitions()
+        result = [] if rows is self.states else [*rows.definitions()]
         initial = function.name == "initial_state"
         empty = f"np.empty(({rows.size}, *{self.x}.shape[1:]))"
-        lines.append(f"{self.out} = {f'np.zeros({rows.size})' if initial else empty}")
+        result.append(f"{self.out} = {f'np.zeros({rows.size})' if initial else empty}")
         for n, row in enumerate(function.rows):
             if initial and row.value == ZERO and not row.listed:
                 continue
             text = self._listed(row) if row.listed else numpy_text(row.value)
-            lines += _assignment(f"{self.out}[{rows.index(n)}]", text, row.value)
-        return _body([*lines, f"return {self.out}"])
+            result += _assignment(f"{self.out}[{rows.index(n)}]", text, row.value)
+        result.append(f"return {self.out}")
+        listed = {name for row in function.rows for part in row.listed for name in names(part)}
+        return self._computing(function.name, function.arguments, doc, roots, result, listed)
 
     def _rates(self, function: ModuleFunction) -> str:
         """Return the function that writes the rates of a batch, or of a part of it."""
         doc = "Write the rates dx/dt into `out`"
-        roots = [row.value for row in function.rows]
-        lines = self._opening("_rates", ("x", "u", "p", "out"), doc, None, roots)
+        roots, result = [row.value for row in function.rows], list[str]()
         for n, row in enumerate(function.rows):
             target = f"{self.out}[{self.states.index(n)}]"
-            lines += _assignment(target, numpy_text(row.value), row.value)
-        return _body(lines)
+            result += _assignment(target, numpy_text(row.value), row.value)
+        return self._computing("_rates", ("x", "u", "p", "out"), doc, roots, result)
 
     def jacobian(self) -> str:
         """Return the function that fills the Jacobian."""
         doc = "Jacobian of rhs, d rhs[i]/d x[j] at [i, j]; shape (n, n, *batch)"
         roots = tuple(jacobian_roots(self.program.jacobian))
-        lines = self._opening("jacobian", ("x", "u", "p"), doc, None, roots)
-        lines.append(f"{self.out} = np.zeros(({self.x}.shape[0], *{self.x}.shape))")
+        result = [f"{self.out} = np.zeros(({self.x}.shape[0], *{self.x}.shape))"]
         for entry in self.program.jacobian:
-            lines += self._entry(entry)
-        return _body([*lines, f"return {self.out}"])
+            result += self._entry(entry)
+        result.append(f"return {self.out}")
+        return self._computing("jacobian", ("x", "u", "p"), doc, roots, result)
 
     def margins(self) -> str:
         """Return the function of the margins, by which the conditions of the domain hold."""
         limits = self.program.limits
         doc = "Margin by which each condition of DOMAIN holds; of a bank, the least one"
         doc += "; shape (len(DOMAIN), *batch)"
-        roots = [limit.margin for limit in limits]
-        lines = self._opening("margins", ("x", "u", "p"), doc, None, roots)
-        lines.append(f"{self.out} = np.empty(({len(limits)}, *{self.x}.shape[1:]))")
+        result = [f"{self.out} = np.empty(({len(limits)}, *{self.x}.shape[1:]))"]
         parameters = {field.name for field in self.program.parameters if field.bank}
         for n, limit in enumerate(limits):
             text = numpy_text(limit.margin)
             if bank_of(limit.margin, self.lanes):
                 constant = {*names(limit.margin)} <= parameters
                 text = f"np.min({text if constant else self._with_lane_axis(limit.margin)}, axis=0)"
-                lines.append(f"{self.out}[{n}] = {text}")
+                result.append(f"{self.out}[{n}] = {text}")
             else:
-                lines += _assignment(f"{self.out}[{n}]", text, limit.margin)
-        return _body([*lines, f"return {self.out}"])
+                result += _assignment(f"{self.out}[{n}]", text, limit.margin)
+        result.append(f"return {self.out}")
+        roots = [limit.margin for limit in limits]
+        return self._computing("margins", ("x", "u", "p"), doc, roots, result)
 
-    def _opening(
+    def _computing(
         self,
         name: str,
         arguments: Sequence[str],
         doc: str,
-        function: ModuleFunction | None,
         roots: Collection[Node],
-    ) -> list[str]:
-        """Return the first lines of a function: its head, unpacked arguments and quantities."""
+        result: Sequence[str],
+        listed: Collection[str] = (),
+    ) -> str:
+        """Return a function: its head, unpacked arguments, the quantities it needs, its result."""
         quantities, used = needed(self.program.quantities, roots)
         words = [self.words[argument] for argument in arguments]
-        shape = "" if function is None else f"; shape {_shape(function)}"
-        lines = [f"def {name}({', '.join(words)}, /):", f'"""{doc}{shape}."""']
+        lines = [f"def {name}({', '.join(words)}, /):", f'"""{doc}."""']
         driven = any(field.name in used for field in self.program.inputs)
         given = [word for word in words if word == self.x or (word == self.u and driven)]
         given = [] if name == "_rates" else given
@@ -141,10 +142,8 @@ class _Printer:
         lines += [f"{word} = {check[word]}" for word in given]
         lines += [f"{bank}_count = {self.p}.{bank}_count" for bank in self.program.counts]
         lines += self.states.definitions()
-        rows = function.rows if function else ()
-        listed = {name for row in rows for part in row.listed for name in names(part)}
         dimensions = f"{self.x}.ndim" if "x" in arguments else "1"
-        floats = divisors(roots, quantities, self.parameters, self.positive) - listed
+        floats = divisors(roots, quantities, self.parameters, self.positive).difference(listed)
         lines += self._unpacking(used, dimensions, listed, floats)
         note = ""
         for quantity in quantities:
@@ -152,7 +151,10 @@ class _Printer:
                 note = quantity.note
                 lines.append(f"# {note}")
             lines += self._definition(quantity)
-        return [*lines, "# result"] if quantities and not (function and function.scalar) else lines
+        alone = len(result) == 1 and name != "_rates"  # the one line of a scalar
+        lines += ["# result"] if quantities and not alone else []
+        text = "\n".join([lines[0], *(f"    {line}" for line in (*lines[1:], *result))])
+        return f"{QUIET}\n{text}" if any(map(PARTIAL.search, _choices(text))) else text
 
     def _unpacking(
         self,
@@ -258,11 +260,6 @@ def _names_with_lane_axis(program: Program) -> dict[str, str]:
         if quantity.bank and bank_of(quantity.value, lanes):
             lanes[quantity.name] = quantity.bank
     return lanes
-
-
-def _body(lines: list[str]) -> str:
-    text = "\n".join([lines[0], *(f"    {line}" for line in lines[1:])])
-    return f"{QUIET}\n{text}" if any(map(PARTIAL.search, _choices(text))) else text
 
 
 def _choices(text: str) -> Iterator[str]:
