@@ -6,7 +6,7 @@ a tolerance or a `FixedStep`.  Output: `Runs`, whose states are those of their l
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property
 from math import ceil
 from typing import Any, TypeAlias, final
 
@@ -65,53 +65,66 @@ class FixedStep:
 @final
 @dataclass(frozen=True)
 class Runs:
-    """The results of runs, and the error of each that stopped early."""
+    """Runs in C from their states at t = 0, and what they have reached so far."""
 
     systems: Sequence[DrivenModule]  # with equal inputs and sizes
     start: FloatArray  # states (runs, n) at t = 0
     times: FloatArray  # of samples (nt,)
-    states: FloatArray  # (runs, nt, n)
-    sums: FloatArray  # integrals (runs, nt, rows), in the order of `DrivenModule.rates`
-    work: NDArray[Any]  # steps, Newton iterations and refused steps of each run (runs, 3)
-    #: The end of each run's last step: t (runs,), x (runs, n), and its ledger (runs, 2, rows).
-    ends: tuple[FloatArray, FloatArray, FloatArray]
-    errors: Sequence[RunError | None]  # of each run
-    numerical: bool  # whether sums end with heat and entropy produced by dissipative starts
+    states: FloatArray  # (runs, nt, n); nan at samples that are not reached
+    sums: FloatArray  # integrals (runs, nt, rows), as in `Batch`
+    batch: Batch
+
+    @property
+    def work(self) -> NDArray[Any]:
+        """Steps, Newton iterations and refused steps of each run (runs, 3)."""
+        records = self.batch.records
+        return np.stack([records[name] for name in ("steps", "iterations", "rejected")], axis=1)
+
+    @cached_property
+    def errors(self) -> tuple[RunError | None, ...]:
+        """The error of each run that stopped early; asked for when all have ended."""
+        batch, errors = self.batch, list[RunError | None]([None] * len(self.start))
+        for k in np.flatnonzero(batch.records["failed"]).tolist():
+            seen = np.vstack([self.start[k], batch.states[k]])
+            at = float(batch.records["t"][k]), batch.x[k]
+            errors[k] = stuck_error(self.systems[k], METHOD, *at, seen, jumps=batch.jumps)
+        return tuple(errors)
 
     def trajectory(self, k: int) -> Trajectory:
         """Return run k; raise its error, with the samples it reached, if it stopped."""
         if error := self.errors[k]:
             error.reached = self.reached(k)
             raise error
-        return self.so_far(k)
+        return self._run(k, self.times, self.states[k], self.sums[k])
 
     def reached(self, k: int) -> tuple[FloatArray, Trajectory]:
         """Return the times and run k until the end of its last step."""
-        t, x, ledger = (values[k : k + 1] for values in self.ends)
-        end = replace(self, times=t, states=x[None], sums=ledger[None, :, 0])
-        return self.so_far(k).until(self.times, float(t[0]), end.so_far(0))
+        batch = self.batch
+        t = batch.records["t"][k : k + 1]
+        last = self._run(k, t, batch.x[k : k + 1], batch.ledgers[k, :1])
+        run = self._run(k, self.times, self.states[k], self.sums[k])
+        return run.until(self.times, float(t[0]), last)
 
     def later(self, since: float) -> tuple[FloatArray, Trajectory]:
         """Return the first run at the samples that it has reached behind a time [s]."""
-        ends = np.searchsorted(self.times, [since, self.ends[0][0]], side="right")
-        rows = slice(*ends.tolist())
-        states, sums = self.states[:, rows], self.sums[:, rows]
-        new = replace(self, times=self.times[rows], states=states, sums=sums)
-        return new.so_far(0).reached(new.times)
+        span = [since, self.batch.records["t"][0]]
+        rows = slice(*np.searchsorted(self.times, span, side="right").tolist())
+        times = self.times[rows]
+        return self._run(0, times, self.states[0, rows], self.sums[0, rows]).reached(times)
 
-    def so_far(self, k: int) -> Trajectory:
-        """Return run k; samples that it has not reached are nan."""
-        sums = self.sums[k].T
-        steps, evaluations, halvings = (int(number) for number in self.work[k])
+    def _run(self, k: int, times: FloatArray, states: FloatArray, sums: FloatArray) -> Trajectory:
+        """Return run k from its rows at some times; those that it has not reached are nan."""
+        numerical = self.batch.extra > 0
+        steps, iterations, refused = self.work[k].tolist()
         return Trajectory(
             start=self.start[k],
-            states=self.states[k].T,
-            inputs=self.systems[0].inputs.at_samples(self.times),
-            integrals=sums[:-2] if self.numerical else sums,
+            states=states.T,
+            inputs=self.systems[0].inputs.at_samples(times),
+            integrals=sums.T[:-2] if numerical else sums.T,
             steps=steps,
-            evaluations=evaluations,
-            halvings=halvings,
-            numerical=sums[-2:] if self.numerical else None,
+            evaluations=iterations,
+            halvings=refused,
+            numerical=sums.T[-2:] if numerical else None,
         )
 
 
@@ -146,27 +159,18 @@ def collocate(
     layout, extra = layout_of(*x.shape, side_by_side=side_by_side), 2 if starts else 0
     parameters = [system.parameters for system in systems]
     batch = Batch(engine, parameters, x, first.inputs, times, how, layout, extra=extra)
+    runs = Runs(systems, x, times, batch.states, batch.sums, batch)
     try:
         if starts:
             advance_from_jumps(batch, how, first.inputs, times, watch)
         elif not how.fixed:
             set_scales(batch, systems, x, how.tolerance)
-        advance(batch, watch, ended and partial(_goes_on, batch, systems, x, times, ended))
+        advance(batch, watch, (lambda t: ended(t, runs.later)) if ended else None)
     except KeyboardInterrupt as stopped:
         batch.call("halt")
-        vars(stopped)["reached"] = results_of(batch, systems, x, times).reached(0)
+        vars(stopped)["reached"] = runs.reached(0)
         raise
-    return results_of(batch, systems, x, times)
-
-
-def _goes_on(
-    batch: Batch,
-    systems: Sequence[DrivenModule],
-    x: FloatArray,
-    times: FloatArray,
-    ended: Ended,
-) -> bool:
-    return not ended(float(batch.records["t"][0]), results_of(batch, systems, x, times).later)
+    return runs
 
 
 def set_scales(
@@ -198,31 +202,16 @@ def advance_from_jumps(
 
 
 def advance(
-    batch: Batch, watch: Watch | None = None, goes_on: Callable[[], bool] | None = None
+    batch: Batch, watch: Watch | None = None, ended: Callable[[float], bool] | None = None
 ) -> None:
-    """Advance runs while they go on, and tell `watch` the mean time they have reached."""
+    """Advance runs until they have `ended`, and tell `watch` the mean time they have reached."""
     most = max(1, CHUNK // batch.x.shape[1])
-    most = max(FEWEST, most // ASKED) if goes_on else most
-    while batch.go(most) and (goes_on is None or goes_on()):
+    most = max(FEWEST, most // ASKED) if ended else most
+    while batch.go(most) and not (ended and ended(float(batch.records["t"][0]))):
         if watch:
             watch(float(np.mean(batch.records["t"])))
     if watch:
         watch(float(np.mean(batch.records["t"])))
-
-
-def results_of(
-    batch: Batch, systems: Sequence[DrivenModule], x: FloatArray, times: FloatArray
-) -> Runs:
-    """Return the results of runs from x (runs, n)."""
-    records = batch.records
-    work = np.stack([records[n] for n in ("steps", "iterations", "rejected")], axis=1)
-    errors: list[RunError | None] = [None] * len(x)
-    for k in np.flatnonzero(records["failed"]).tolist():
-        seen = np.vstack([x[k], batch.states[k]])
-        t, last = float(records["t"][k]), batch.x[k]
-        errors[k] = stuck_error(systems[k], METHOD, t, last, seen, jumps=batch.jumps)
-    arrays = batch.states, batch.sums, work, (records["t"], batch.x, batch.ledgers)
-    return Runs(systems, x, times, *arrays, tuple(errors), numerical=batch.extra > 0)
 
 
 def stepping(system: DrivenModule, accuracy: float | FixedStep, stages: int | None) -> Stepping:

@@ -118,11 +118,54 @@ class PlannedRun:
 
         Behind its end there are no numbers.
         """
-        request, system, x = self.request, self.system, self.x
-        if request.chosen.engine:
-            return compiled_run(request, request.chosen.engine, system, x, samples, ended)
+        request, engine = self.request, self.request.chosen.engine
+        if engine:
+            return self._compiled(engine, samples, ended)
         options = request.chosen.method, request.rtol, request.watch, ended
-        return by_scipy(system, x, samples, *options)
+        return by_scipy(self.system, self.x, samples, *options)
+
+    def _compiled(
+        self, engine: Engine, samples: FloatArray, ended: Ended | None
+    ) -> tuple[Trajectory, dict[str, object]]:
+        """Return the run in C, with a fixed step or a tolerance."""
+        request, system, x, step = self.request, self.system, self.x, self.request.step
+        if request.starts:
+            _check_dissipative(engine, step)
+        try:
+            check_inputs(system, x, samples)
+        except RunError as error:
+            error.reached = self._run_before(error.time, samples, ended)
+            raise
+        rtol = max(request.rtol, LEAST_RTOL)
+        accuracy: dict[str, object] = {"rtol": rtol, "order": 2 * stages_for(rtol)[0]}
+        try:
+            if step:
+                accuracy = {"step": step.length, "order": step.order}
+            given = [system], engine, x[None], samples, step or rtol, request.watch
+            trajectory = collocate(*given, ended=ended, starts=request.starts).trajectory(0)
+        except RunError as stopped:
+            cause = stop_cause(system, x, samples, stopped)
+            cause.reached = stopped.reached
+            raise cause from stopped
+        work = {
+            "accepted_steps": trajectory.steps,
+            "newton_iterations": trajectory.evaluations,
+            "halvings": trajectory.halvings,
+        }
+        return trajectory, {"method": METHOD, **accuracy, **work}
+
+    def _run_before(
+        self, end: float, samples: FloatArray, ended: Ended | None
+    ) -> tuple[FloatArray, Trajectory]:
+        """Return the run to shortly before its inputs leave the domain at `end` [s].
+
+        An error before then replaces that of the inputs.
+        """
+        start = self.system.inputs.start
+        before = np.union1d(samples[samples < end], [end - BEFORE * (end - start)])
+        inputs = replace(self.system.inputs, duration=float(before[-1]) - start)
+        shorter = replace(self, system=replace(self.system, inputs=inputs))
+        return shorter.run(before, ended)[0].reached(before)
 
     def dataset(self, samples: FloatArray, watched: Watched) -> xarray.Dataset:
         """Return the run as a Dataset with its events; `partial` of an error is that so far."""
@@ -179,61 +222,6 @@ class PlannedRun:
         count = int(np.argmax(holds)) if holds.any() else times.size
         kept = np.flatnonzero(np.isin(times[:count], samples) | (np.arange(count) == count - 1))
         return times[kept], seen.at(kept)
-
-
-def compiled_run(
-    request: Request,
-    engine: Engine,
-    system: DrivenModule,
-    x: FloatArray,
-    samples: FloatArray,
-    ended: Ended | None = None,
-) -> tuple[Trajectory, dict[str, object]]:
-    """Return a run in C, with a fixed step or a tolerance, and its work."""
-    step = request.step
-    if request.starts:
-        _check_dissipative(engine, step)
-    try:
-        check_inputs(system, x, samples)
-    except RunError as error:
-        error.reached = _run_before(error.time, request, system, x, samples, ended)
-        raise
-    rtol = max(request.rtol, LEAST_RTOL)
-    accuracy: dict[str, object] = {"rtol": rtol, "order": 2 * stages_for(rtol)[0]}
-    try:
-        if step:
-            accuracy = {"step": step.length, "order": step.order}
-        given = [system], engine, x[None], samples, step or rtol, request.watch
-        trajectory = collocate(*given, ended=ended, starts=request.starts).trajectory(0)
-    except RunError as stopped:
-        cause = stop_cause(system, x, samples, stopped)
-        cause.reached = stopped.reached
-        raise cause from stopped
-    work = {
-        "accepted_steps": trajectory.steps,
-        "newton_iterations": trajectory.evaluations,
-        "halvings": trajectory.halvings,
-    }
-    return trajectory, {"method": METHOD, **accuracy, **work}
-
-
-def _run_before(
-    end: float,
-    request: Request,
-    system: DrivenModule,
-    x: FloatArray,
-    samples: FloatArray,
-    ended: Ended | None,
-) -> tuple[FloatArray, Trajectory]:
-    """Return a run to shortly before its inputs leave the domain at `end` [s].
-
-    An error before then replaces that of the inputs.
-    """
-    last = end - BEFORE * (end - system.inputs.start)
-    before = np.union1d(samples[samples < end], [last])
-    duration = float(before[-1]) - system.inputs.start
-    shorter = replace(system, inputs=replace(system.inputs, duration=duration))
-    return PlannedRun(request, shorter, x).run(before, ended)[0].reached(before)
 
 
 def _check_dissipative(engine: Engine, step: FixedStep | None) -> None:

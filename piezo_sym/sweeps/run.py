@@ -4,8 +4,10 @@ Input: the `Plan` of a box, its module.  Output: a `Result`: the quantities of e
 error of each that failed.  Runs with equal inputs and sizes form a `Group`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, final
 
 import numpy as np
@@ -53,11 +55,107 @@ class Result:
 @final
 @dataclass(frozen=True)
 class Group:
-    """Runs with equal inputs and sizes."""
+    """Runs of a plan with equal inputs and sizes."""
 
+    plan: Plan
+    engine: Engine | None
+    points: NDArray[np.intp]  # (runs, axes)
     systems: Sequence[DrivenModule]
     start: FloatArray  # states (runs, n) at t = 0, nan where there is none
     errors: list[str]  # why each run failed, or ""
+
+    @cached_property
+    def u(self) -> FloatArray:
+        """The inputs (m, nt) at all samples."""
+        return self.systems[0].inputs.at_samples(self.plan.samples)
+
+    def result(self, watch: Watch) -> tuple[Quantities, Quantities]:
+        """Return the quantities, and coordinates from a reducing function; fill in errors."""
+        plan = self.plan
+        quantities = self._in_c(self.engine, watch) if self.engine else self._by_scipy(watch)
+        if plan.reduce is None:
+            return quantities, {}
+        if isinstance(plan.reduce, str):
+            return over_time(quantities, weights(plan.samples[plan.kept])), {}
+        runs = self._dataset(quantities)
+        reduced = (run_by_run if plan.each else all_at_once)(plan.reduce, runs, self.errors)
+        if reduced is None:
+            return {}, {}
+        refuse_names(map(str, reduced.variables), (*plan.names(), "error"))
+        return as_quantities(reduced)
+
+    def _blank(self) -> Quantities:
+        """Return every quantity of the runs, filled with nan."""
+        size = len(self.systems), self.plan.samples[self.plan.kept].size
+        quantities = {}
+        for name, one in layout(self.systems[0]).items():
+            values = np.full((*size, *one.shape[1:]), np.nan)
+            quantities[name] = xarray.Variable((MEMBER, *one.dims), values, one.attrs)
+        return quantities
+
+    def _in_c(self, engine: Engine, watch: Watch) -> Quantities:
+        """Return every quantity of runs in C; fill in the errors of those that fail.
+
+        As with `simulate`, a run whose inputs leave the domain after its start fails.
+        """
+        plan, errors = self.plan, self.errors
+        started = [k for k, error in enumerate(errors) if not error]
+        if not started:
+            return self._blank()
+        systems, x = [self.systems[k] for k in started], self.start[started]
+        for k in started if inputs_vary(systems[0]) else ():
+            with filled_in(errors, k, RunError):
+                check_inputs(self.systems[k], self.start[k], plan.samples)
+        given = systems, engine, x, plan.samples, plan.step or plan.rtol, watch
+        runs = collocate(*given, side_by_side=plan.side_by_side)
+        for n, k in enumerate(started):
+            if (stopped := runs.errors[n]) and not errors[k]:
+                errors[k] = str(stop_cause(systems[n], x[n], plan.samples, stopped))
+        quantities = of_runs(runs, engine, self.u, plan.kept)
+        if not any(errors):
+            return quantities
+        kept = np.array([not error for error in errors])
+        padded = self._blank()
+        for name, variable in quantities.items():
+            padded[name].values[kept] = variable.values[kept[started]]
+        return padded
+
+    def _by_scipy(self, watch: Watch) -> Quantities:
+        """Return every quantity of runs by SciPy; fill in the errors of those that fail."""
+        plan, quantities = self.plan, self._blank()
+        for k, system in enumerate(self.systems):
+            if self.errors[k]:
+                continue
+            with filled_in(self.errors, k):
+                how = plan.method, plan.rtol, watch
+                run, _ = by_scipy(system, self.start[k], plan.samples, *how)
+                for name, one in of_trajectory(system, run).items():
+                    quantities[name].values[k] = one.values[plan.kept]
+        return quantities
+
+    def _dataset(self, quantities: Quantities) -> xarray.Dataset:
+        """Return the runs as a Dataset over `member`, for a user's function."""
+        system, plan = self.systems[0], self.plan
+        module, size = system.module, (len(self.u), len(self.points), plan.samples.size)
+        waves = np.broadcast_to(self.u[:, None], size)
+        inputs = dict(named_rows(system, (MEMBER, "time"), module.INPUTS, waves))
+        coords: dict[str, Any] = dict(coordinates(lane_counts(system), plan.samples))
+        for n, axis in enumerate(plan.axes):
+            for name, (values, attrs) in axis.coordinates():
+                taken = name in quantities or name in inputs or name in coords
+                label = f"over_{name}" if taken else name
+                coords[label] = (MEMBER, np.asarray(values)[self.points[:, n]], attrs)
+        attrs = {"model": module.NAME, "spec_sha256": module.SPEC_SHA256}
+        return xarray.Dataset({**quantities, **inputs}, coords, attrs)
+
+
+@contextmanager
+def filled_in(errors: list[str], k: int, kind: type[PiezoError] = PiezoError) -> Iterator[None]:
+    """Make an error of the block that of run k, as text; the block ends there."""
+    try:
+        yield
+    except kind as error:
+        errors[k] = str(error)
 
 
 def group_at(
@@ -65,7 +163,8 @@ def group_at(
 ) -> Group:
     """Return the runs at points (runs, axes), which have equal inputs and sizes.
 
-    A run that cannot start has the same error as from `simulate`.
+    A run that cannot start has the same error as from `simulate`. C finds the starts inside the
+    domain, but does not check the limits of stops.
     """
     inputs, base = plan.inputs_at(module, points[0]), plan.base_at(module, points[0])
     changed = plan.values_at("parameters", points)
@@ -77,33 +176,17 @@ def group_at(
     with np.errstate(all="ignore"):
         for k, swept in enumerate(plan.values_at("initial", points)):
             p, given = systems[k].parameters, {**plan.initial, **swept}
-            try:
+            with filled_in(errors, k):
                 start[k] = read_initial(module, p, u, given) if given else own_initial(module, p, u)
-            except PiezoError as error:
-                errors[k] = str(error)
-    check_starts(systems, engine, start, errors)
-    return Group(systems, start, errors)
-
-
-def check_starts(
-    systems: Sequence[DrivenModule], engine: Engine | None, start: FloatArray, errors: list[str]
-) -> None:
-    """Fill in the errors of runs whose start is outside the domain.
-
-    C finds the starts inside, but does not check the limits of stops.
-    """
-    inside = np.zeros(len(systems), dtype=bool)
-    if engine and not limited(systems[0].module):
-        first = systems[0].inputs.segments[0]
-        u = np.ascontiguousarray(first.at(first.start)[None])
-        x = np.ascontiguousarray(start[:, None])
-        inside = Members(engine, [one.parameters for one in systems]).inside(x, u)[:, 0]
+    inside = np.zeros(len(points), dtype=bool)
+    if engine and not limited(module):
+        members = Members(engine, [one.parameters for one in systems])
+        inside = members.inside(np.ascontiguousarray(start[:, None]), u[None])[:, 0]
     for k in np.flatnonzero(~inside).tolist():
         if not errors[k]:
-            try:
+            with filled_in(errors, k):
                 check_start(systems[k], start[k])
-            except PiezoError as error:
-                errors[k] = str(error)
+    return Group(plan, engine, points, systems, start, errors)
 
 
 def run_box(plan: Plan, module: GeneratedModule, watch: Watch) -> Result:
@@ -114,7 +197,7 @@ def run_box(plan: Plan, module: GeneratedModule, watch: Watch) -> Result:
     all_coords: Quantities = {}
     for runs in plan.groups():
         group = group_at(plan, module, engine, plan.points[runs])
-        quantities, coords = group_result(plan, group, engine, plan.points[runs], watch)
+        quantities, coords = group.result(watch)
         errors[runs] = np.array(group.errors, dtype=object)
         if all_quantities and quantities:
             refuse_other_names(all_quantities, quantities)
@@ -143,108 +226,3 @@ def fill_in(
     refuse_other_sizes(name, box[name].shape[1:], shape[1:])
     where: Any = (runs, *(slice(size) for size in part.shape[1:]))
     box[name].values[where] = part.values
-
-
-def group_result(
-    plan: Plan, group: Group, engine: Engine | None, points: NDArray[np.intp], watch: Watch
-) -> tuple[Quantities, Quantities]:
-    """Return a group's quantities, and coordinates from a reducing function; fill in its errors."""
-    u = group.systems[0].inputs.at_samples(plan.samples)
-    if engine:
-        quantities = run_in_c(plan, group, engine, u, watch)
-    else:
-        quantities = run_by_scipy(plan, group, watch)
-    if plan.reduce is None:
-        return quantities, {}
-    if isinstance(plan.reduce, str):
-        return over_time(quantities, weights(plan.samples[plan.kept])), {}
-    runs = dataset(plan, group, quantities, u, points)
-    reduced = (run_by_run if plan.each else all_at_once)(plan.reduce, runs, group.errors)
-    if reduced is None:
-        return {}, {}
-    refuse_names(map(str, reduced.variables), (*plan.names(), "error"))
-    return as_quantities(reduced)
-
-
-def nan_quantities(plan: Plan, group: Group) -> Quantities:
-    """Return every quantity of a group's runs, filled with nan."""
-    size = len(group.systems), plan.samples[plan.kept].size
-    quantities = {}
-    for name, one in layout(group.systems[0]).items():
-        values = np.full((*size, *one.shape[1:]), np.nan)
-        quantities[name] = xarray.Variable((MEMBER, *one.dims), values, one.attrs)
-    return quantities
-
-
-def run_in_c(plan: Plan, group: Group, engine: Engine, u: FloatArray, watch: Watch) -> Quantities:
-    """Return every quantity of runs in C; fill in the errors of those that fail.
-
-    As with `simulate`, a run whose inputs leave the domain fails.
-    """
-    started = [k for k, error in enumerate(group.errors) if not error]
-    if not started:
-        return nan_quantities(plan, group)
-    systems, x = [group.systems[k] for k in started], group.start[started]
-    outside = input_errors(systems, x, plan.samples)
-    given = systems, engine, x, plan.samples, plan.step or plan.rtol, watch
-    runs = collocate(*given, side_by_side=plan.side_by_side)
-    for n, k in enumerate(started):
-        stopped = runs.errors[n]
-        error = outside[n] or (stopped and stop_cause(systems[n], x[n], plan.samples, stopped))
-        group.errors[k] = str(error or "")
-    quantities = of_runs(runs, engine, u, plan.kept)
-    if not any(group.errors):
-        return quantities
-    kept = np.array([not error for error in group.errors])
-    padded = nan_quantities(plan, group)
-    for name, variable in quantities.items():
-        padded[name].values[kept] = variable.values[kept[started]]
-    return padded
-
-
-def input_errors(
-    systems: Sequence[DrivenModule], x: FloatArray, samples: FloatArray
-) -> list[RunError | None]:
-    """Return the error of each run whose inputs leave the domain after its start."""
-    errors: list[RunError | None] = [None] * len(systems)
-    for k in range(len(systems)) if inputs_vary(systems[0]) else ():
-        try:
-            check_inputs(systems[k], x[k], samples)
-        except RunError as error:
-            errors[k] = error
-    return errors
-
-
-def run_by_scipy(plan: Plan, group: Group, watch: Watch) -> Quantities:
-    """Return every quantity of runs by SciPy; fill in the errors of those that fail."""
-    quantities = nan_quantities(plan, group)
-    for k, system in enumerate(group.systems):
-        if group.errors[k]:
-            continue
-        given = system, group.start[k], plan.samples, plan.method, plan.rtol, watch
-        try:
-            run, _ = by_scipy(*given)
-        except PiezoError as error:
-            group.errors[k] = str(error)
-        else:
-            for name, one in of_trajectory(system, run).items():
-                quantities[name].values[k] = one.values[plan.kept]
-    return quantities
-
-
-def dataset(
-    plan: Plan, group: Group, quantities: Quantities, u: FloatArray, points: NDArray[np.intp]
-) -> xarray.Dataset:
-    """Return the runs of a group as a Dataset over `member`, for a user's function."""
-    system = group.systems[0]
-    module, size = system.module, (len(u), len(points), plan.samples.size)
-    waves = np.broadcast_to(u[:, None], size)
-    inputs = dict(named_rows(system, (MEMBER, "time"), module.INPUTS, waves))
-    coords: dict[str, Any] = dict(coordinates(lane_counts(system), plan.samples))
-    for n, axis in enumerate(plan.axes):
-        for name, (values, attrs) in axis.coordinates():
-            taken = name in quantities or name in inputs or name in coords
-            label = f"over_{name}" if taken else name
-            coords[label] = (MEMBER, np.asarray(values)[points[:, n]], attrs)
-    attrs = {"model": module.NAME, "spec_sha256": module.SPEC_SHA256}
-    return xarray.Dataset({**quantities, **inputs}, coords, attrs)
