@@ -49,48 +49,37 @@ def choose_method(module: GeneratedModule, method: str | None, step: object) -> 
     """Return the method that runs a module; `method` and `step` are the user's, or None."""
     if method not in (None, METHOD):
         return ChosenMethod(method, None, f"none: method {method} was asked for")
+    given: object = module
+    file = (getattr(given, "__file__", None) or "") if isinstance(given, ModuleType) else ""
+    beside = (source_path(module, ending) for ending in (".h", ".c"))
+    has_c = file and (not os.path.isfile(file) or any(map(os.path.isfile, beside)))
     free = method is None and step is None
-    if free and not _has_c(module):
+    if free and not has_c:
         return ChosenMethod(FALLBACK, None, "none: the module has no C source beside it")
-    engine = _engine_or_error(module)
-    if isinstance(engine, Engine):
-        return ChosenMethod(METHOD, engine, f"compiled by {_compiler(engine)}")
-    if free:
-        _warn(module.NAME, str(engine))
-        return ChosenMethod(FALLBACK, None, f"none: {engine}")
-    instead = f"leave out step, and take method='{FALLBACK}' for a run in NumPy"
-    remedy = f"{engine.remedy}; or {instead}" if engine.remedy else instead
-    raise EngineError(engine.what, engine.where, remedy=remedy)
-
-
-def _engine_or_error(module: GeneratedModule) -> Engine | EngineError:
-    if not _module_file(module):
-        what = "is no module loaded from a file, so no C source is its own"
-        return EngineError(what, f"model '{module.NAME}'")
-    if not os.path.isfile(_module_file(module)):
-        remedy = f"check that {path_text(cache_folder())} can be written"
-        return EngineError("its C source was not kept", remedy=remedy)
     try:
-        read_source(module, "_step.c")
-        return engine_of(module)
+        engine = _engine(module, file)
     except EngineError as error:
-        return error
+        if free:
+            _warn(module.NAME, str(error))
+            return ChosenMethod(FALLBACK, None, f"none: {error}")
+        instead = f"leave out step, and take method='{FALLBACK}' for a run in NumPy"
+        remedy = f"{error.remedy}; or {instead}" if error.remedy else instead
+        raise EngineError(error.what, error.where, remedy=remedy) from None
+    text = ctypes.c_char.in_dll(engine.library, f"{module.NAME}_compiler")
+    compiler = ctypes.string_at(ctypes.addressof(text)).decode(errors="replace").strip()
+    return ChosenMethod(METHOD, engine, f"compiled by {one_line(compiler)}")
 
 
-def _compiler(engine: Engine) -> str:
-    text = ctypes.c_char.in_dll(engine.library, f"{engine.module.NAME}_compiler")
-    return one_line(ctypes.string_at(ctypes.addressof(text)).decode(errors="replace").strip())
-
-
-def _module_file(module: object) -> str:
-    """Return the file that a module was loaded from, with its C beside it; "" if there is none."""
-    return (getattr(module, "__file__", None) or "") if isinstance(module, ModuleType) else ""
-
-
-def _has_c(module: GeneratedModule) -> bool:
-    """Return whether C is beside a module, or the module's file was deleted, too."""
-    file, beside = _module_file(module), (source_path(module, ending) for ending in (".h", ".c"))
-    return bool(file) and (not os.path.isfile(file) or any(map(os.path.isfile, beside)))
+def _engine(module: GeneratedModule, file: str) -> Engine:
+    """Return the engine of a module that was loaded from a file; "" for none."""
+    if not file:
+        what = "is no module loaded from a file, so no C source is its own"
+        raise EngineError(what, f"model '{module.NAME}'")
+    if not os.path.isfile(file):
+        remedy = f"check that {path_text(cache_folder())} can be written"
+        raise EngineError("its C source was not kept", remedy=remedy)
+    read_source(module, "_step.c")
+    return engine_of(module)
 
 
 @lru_cache(maxsize=256)

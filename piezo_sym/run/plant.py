@@ -98,8 +98,11 @@ class Plant:
 
     Attributes
     ----------
+    system : the model with its parameters.
+    batch : the run in C.
     start : the state (n,) at t = 0.
-    u, y : the inputs (m,) that C reads, and the outputs (ports,) that it writes.
+    u : the inputs (m,) that C reads.
+    y : the outputs (ports,) that it writes.
     """
 
     def __init__(
@@ -113,12 +116,12 @@ class Plant:
     ) -> None:
         x = read_initial(system.module, system.parameters, u, initial)
         check_start(system, x)
-        self._system, self.start, self._step = system, x, stepping.fixed
+        self.system, self.start, self._step = system, x, stepping.fixed
         self.u, self.y = u, y
         layout = layout_of(1, x.size, side_by_side=False)
         given = engine, [system.parameters], x[None], system.inputs, np.empty(0)
-        self._batch = Batch(*given, stepping, layout)
-        self._kept = np.zeros(2 * x.size + self._batch.ledgers.size)
+        self.batch = Batch(*given, stepping, layout)
+        self._kept = np.zeros(2 * x.size + self.batch.ledgers.size)
         domain, (conditions, _) = system.module.DOMAIN, input_conditions(system)
         self._conditions = np.array(conditions, dtype="l")
         self._strict = np.array([domain[n].strict for n in conditions], dtype="l")
@@ -128,7 +131,7 @@ class Plant:
 
     def record(self, steps: int, plants: int) -> Any:
         """Return MODEL(stepper) for the first of `plants` plants, with `steps` steps per call."""
-        batch, self._length = self._batch, steps * self._step
+        batch, self._length = self.batch, steps * self._step
         return c_record("stepper")(
             *(batch.address, batch.run, batch.inputs.segments[0].signals),
             *(at(self.u), at(self.y), *self._functions),
@@ -136,54 +139,35 @@ class Plant:
             *(self._conditions.size, steps, plants),
         )
 
-    def function(self, name: str) -> Any:
-        """Return the C function MODEL(name)."""
-        return self._batch.function(name)
-
-    @property
-    def x(self) -> FloatArray:
-        """The state (n,), a copy."""
-        x: FloatArray = self._batch.x[0].copy()
-        return x
-
-    def check(self, x: FloatArray) -> None:
-        """Raise `RunError` if the plant cannot start from the state x (n,)."""
-        check_start(self._system, x)
-
     def inputs_error(self, u: FloatArray, t: float) -> RunError | None:
         """Return why the inputs u (m,), which act from t [s] on, leave the domain, or None."""
         x = self.start  # conditions on inputs do not depend on the state
-        if np.any(self._system.violated(x, u)[self._conditions]):
-            return domain_error(self._system, t, x, u)
+        if np.any(self.system.violated(x, u)[self._conditions]):
+            return domain_error(self.system, t, x, u)
         return None
 
     def reset(self) -> None:
         """Go back to the start, with an empty ledger; MODEL(forget) does the rest."""
-        self._batch.x[0] = self.start
-        self._batch.largest[0] = np.abs(self.start)
-        self._batch.ledgers[:] = 0.0
+        self.batch.x[0] = self.start
+        self.batch.largest[0] = np.abs(self.start)
+        self.batch.ledgers[:] = 0.0
 
     def ledger(self, taken: int) -> dict[str, FloatArray]:
         """Return the ledger after `taken` calls, by the names of `simulate`."""
-        x, u = self._batch.x[0][:, None], self.u[:, None]
-        sums = self._batch.ledgers[0, 0][:, None]
+        x, u = self.batch.x[0][:, None], self.u[:, None]
+        sums = self.batch.ledgers[0, 0][:, None]
         past = Trajectory(self.start, x, u, sums, taken, 0)
-        ledger = Evaluation.of(self._system, past).ledger()
+        ledger = Evaluation.of(self.system, past).ledger()
         return {name: values[0].copy() for name, (_, values, _) in ledger}
 
     def refusal(self, t: float) -> PiezoError:
         """Return why C took no step at t [s]: the inputs, or the state."""
         margins = self._margins[self._conditions]
         if not np.all((margins > 0) | ((margins == 0) & (self._strict == 0))):  # nan lies outside
-            return domain_error(self._system, t, self._batch.x[0], self.u)
+            return domain_error(self.system, t, self.batch.x[0], self.u)
         what, length = f"no step stays in the domain at t = {t:.6g} s", self._length
-        x, lengths = self._batch.x[0], (part * length for part in AHEAD)
-        if (edge := edge_ahead(self._system, x, self.u, *lengths))[0]:
-            remedy = f"change {listing(remedies(self._system, edge[0]))}"
+        x, lengths = self.batch.x[0], (part * length for part in AHEAD)
+        if (edge := edge_ahead(self.system, x, self.u, *lengths))[0]:
+            remedy = f"change {listing(remedies(self.system, edge[0]))}"
             return RunError(f"{what}: {edge[1]}", "Stepper.step", remedy=remedy)
         return RunError(what, "Stepper.step", remedy="look at the inputs, or take shorter steps")
-
-
-def calls_of(plants: Sequence[Plant], steps: int) -> Any:
-    """Return an array of each plant's MODEL(stepper), with `steps` steps per call."""
-    return (c_record("stepper") * len(plants))(*(one.record(steps, len(plants)) for one in plants))

@@ -12,6 +12,7 @@ import ctypes
 import struct
 import threading
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, NoReturn, final
 
 import numpy as np
@@ -21,8 +22,10 @@ from piezo_sym.run.checks import BOOLS, FloatArray, calling, integer, number, po
 from piezo_sym.run.collocation import read_order
 from piezo_sym.run.engine.batch import Stepping
 from piezo_sym.run.engine.engine import engine_of
+from piezo_sym.run.engine.records import c_record
+from piezo_sym.run.guard import check_start
 from piezo_sym.run.module import GeneratedModule, checked, in_order, row_names
-from piezo_sym.run.plant import Given, Plant, Start, calls_of, read_held, read_plants, read_quanta
+from piezo_sym.run.plant import Given, Plant, Start, read_held, read_plants, read_quanta
 from piezo_sym.run.system import DrivenModule
 
 #: The longest delay of inputs, in calls.
@@ -121,16 +124,19 @@ class Stepper:
             Plant(DrivenModule(module, p, held), engine, initial, stepping, u, y)
             for p, u, y in zip(values, self._u, self._y, strict=True)
         ]
-        self._calls = calls_of(self._plants, integer(every, "Stepper.every", 1))
+        steps, many = integer(every, "Stepper.every", 1), len(self._plants)
+        calls = (plant.record(steps, many) for plant in self._plants)
+        self._calls = (c_record("stepper") * many)(*calls)
         self._at = ctypes.byref(self._calls)
-        self._once, self._forget = map(self._plants[0].function, ("step_once", "forget"))
+        self._once, self._forget = map(self._plants[0].batch.function, ("step_once", "forget"))
         self._x_quanta, self._y_quanta = read_quanta(quantum, module, values[0], self.outputs)
         kept = integer(delay, "Stepper.delay", 0, MOST_DELAY) + 1
         self._first, self._late = self._u.copy(), np.zeros((kept, *self._u.shape))
         self._direct = not (self._many or delay)
         self._put, self._buffer = struct.Struct(f"{len(self.inputs)}d").pack_into, self._u.data
         direct = self._direct and self._y_quanta is None
-        self._read: Callable[[], FloatArray] = self._y[0].copy if direct else self._outputs
+        shown = partial(self._shown, self._y, self._y_quanta)
+        self._read: Callable[[], FloatArray] = self._y[0].copy if direct else shown
         lock = threading.Lock()
         self._begin, self._end = lock.acquire, lock.release
         self.reset()
@@ -146,18 +152,15 @@ class Stepper:
             rows = np.where(quanta > 0, np.round(rows / size) * size, rows)
         return rows.T.copy() if self._many else rows[0].copy()
 
-    def _outputs(self) -> FloatArray:
-        return self._shown(self._y, self._y_quanta)
-
     @property
     def x(self) -> FloatArray:
         """The state, shape (n,); of several plants (n, plants)."""
-        return self._shown(np.array([plant.x for plant in self._plants]))
+        return self._shown(np.array([plant.batch.x[0] for plant in self._plants]))
 
     @property
     def measured(self) -> FloatArray:
         """The state, shaped as x, rounded to quanta where there are some."""
-        return self._shown(np.array([plant.x for plant in self._plants]), self._x_quanta)
+        return self._shown(np.array([plant.batch.x[0] for plant in self._plants]), self._x_quanta)
 
     @property
     def time(self) -> float:
@@ -210,7 +213,9 @@ class Stepper:
             else:
                 self._queue(u)
             if failed := self._once(self._at):
-                raise self._refusal(u, failed - 1)
+                self._check(u)
+                plant = self._plants[failed - 1]
+                raise self._of_plant(plant.refusal(self.time), failed - 1)
             self._taken += 1
             return self._read()
         except (ValueError, TypeError, OverflowError, struct.error) as error:
@@ -272,7 +277,7 @@ class Stepper:
             if start.size != len(self.states):
                 expected = f"one number each for {listing(self.states)}"
                 raise UsageError(f"{start.size} numbers are no state", "Stepper.reset", expected)
-            plant.check(start)
+            check_start(plant.system, start)
         return starts
 
     def _no_inputs(self, u: object) -> UsageError:
@@ -287,11 +292,6 @@ class Stepper:
         for name, value in zip(self.inputs, u, strict=True):
             for one in np.ravel(value).tolist() if self._many else [value]:
                 number(one, f"Stepper.step: input {quote(name)}")
-
-    def _refusal(self, u: Sequence[float | FloatArray] | FloatArray, failed: int) -> PiezoError:
-        """Return why a plant took no step."""
-        self._check(u)
-        return self._of_plant(self._plants[failed].refusal(self.time), failed)
 
     def _of_plant(self, error: PiezoError, n: int) -> PiezoError:
         """Return the error with the plant's number, if there are several plants."""

@@ -6,7 +6,7 @@ them and owns the arrays that C uses.
 
 import ctypes
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import nan
@@ -19,7 +19,7 @@ from piezo_sym.interrupts import held_back
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.library import Layout, Sources, read_source, shared_library
-from piezo_sym.run.engine.records import DOUBLE, LONG, addresses, at, c_record, record_dtype
+from piezo_sym.run.engine.records import LONG, addresses, at, c_record, record_dtype
 from piezo_sym.run.engine.signals import InputRecords
 from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.module import GeneratedModule
@@ -192,10 +192,6 @@ class Batch:
         """Return the C function MODEL(name)."""
         return getattr(self._library, f"{self._engine.module.NAME}_{name}")
 
-    def survey(self, longest: float) -> None:
-        """Set `largest` by coarse steps of at most `longest` [s]."""
-        self.call("survey", DOUBLE(longest))
-
     def go(self, steps: int) -> bool:
         """Take at most `steps` steps in each lane; return whether runs are left."""
         return bool(self.call("go", LONG(steps)))
@@ -205,13 +201,9 @@ class Batch:
 
         An interrupt is raised behind the call: what is raised in a function that C calls is lost.
         """
-        delayed = held_back if self.inputs.calls else _no_signals
-        with delayed() as self.inputs.received:
+        delayed = held_back() if self.inputs.calls else nullcontext(list[int]())
+        with delayed as self.inputs.received:
             result = self.function(name)(self.address, *more)
         if self.inputs.raised:
             raise self.inputs.raised[0]
         return result
-
-
-def _no_signals() -> AbstractContextManager[list[int]]:
-    return nullcontext([])

@@ -92,23 +92,24 @@ class Sources:
         """Return the texts to compile by file name, without values, on which no code depends."""
         header = _VALUES.sub("", self.header)
         texts = {f"{self.name}.h": header, f"{self.name}.c": self.source}
+        sources = self._sources()
         if self.stages:
-            texts[f"{self.name}_step.c"] = self.step
-            texts["elimination.c"] = c_source("elimination.c")
-            texts |= self._steps()
-        else:
-            texts[DRIVER] = functions_source(self.name)
-        return {name: _COMMENT.sub(" ", text) for name, text in texts.items()}
+            texts |= {f"{self.name}_step.c": self.step, "elimination.c": c_source("elimination.c")}
+            head = "" if self.proved else NOT_PROVED
+            sources = {name: head + text for name, text in sources.items()}
+        return {name: _COMMENT.sub(" ", text) for name, text in (texts | sources).items()}
 
-    def _steps(self) -> dict[str, str]:
-        """Return the files to compile for steps by file name."""
-        lossy, head = self.lossy, "" if self.proved else NOT_PROVED
-        if self.layout == "slopes":
-            return {DRIVER: head + derivatives_source(self.name, self.stages)}
-        driver = steps_source(self.name, self.stages, self.layout, lossy=lossy)
-        texts = {DRIVER: head + driver, LAWS: head + laws_source(self.name, self.layout)}
-        if lanes := stage_lanes(self.stages, self.layout, lossy=lossy):
-            texts[STAGES] = head + stages_source(self.name, lanes)
+    def _sources(self) -> dict[str, str]:
+        """Return the files to compile, which include the others."""
+        name, stages, layout, lossy = self.name, self.stages, self.layout, self.lossy
+        if not stages:
+            return {DRIVER: functions_source(name)}
+        if layout == "slopes":
+            return {DRIVER: derivatives_source(name, stages)}
+        texts = {DRIVER: steps_source(name, stages, layout, lossy=lossy)}
+        texts[LAWS] = laws_source(name, layout)
+        if lanes := stage_lanes(stages, layout, lossy=lossy):
+            texts[STAGES] = stages_source(name, lanes)
         return texts
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from itertools import repeat
-from operator import attrgetter, is_
+from operator import is_
 from typing import Any, final
 
 import numpy as np
@@ -97,8 +97,6 @@ class ParameterRecords:
         none = [("none", ctypes.c_char)]
         self._kind: Any = type("Parameters", (ctypes.Structure,), {"_fields_": fields or none})
         self._dtype: np.dtype[Any] = np.dtype(self._kind)
-        numbers = [record.name for record in module.PARAMETERS if not record.bank]
-        self._numbers = attrgetter(*numbers) if numbers else lambda _: ()
         self._cached = lru_cache(maxsize=REMEMBERED)(lambda p: self._made([p]))
 
     def __call__(self, p: Any) -> Structures:
@@ -115,16 +113,13 @@ class ParameterRecords:
     def _made(self, parameters: Sequence[Any]) -> Structures:
         records: NDArray[Any] = np.zeros(len(parameters), self._dtype)
         kept: list[object] = [records]
-        numbers = [n for n, record in enumerate(self._module.PARAMETERS) if not record.bank]
-        columns = np.array([self._numbers(p) for p in parameters], dtype=float)
-        for n, values in zip(numbers, columns.reshape(len(parameters), -1).T, strict=True):
-            records[f"field_{n}"] = values
         for n, record in enumerate(self._module.PARAMETERS):
+            values: Any = [getattr(p, record.name) for p in parameters]
             if record.bank:
-                count = lanes(parameters[0], record.bank)
-                rows = _rows([getattr(p, record.name) for p in parameters], count)
+                rows = _rows(values, lanes(parameters[0], record.bank))
                 kept.append(rows)
-                records[f"field_{n}"] = addresses(rows)
+                values = addresses(rows)
+            records[f"field_{n}"] = values
         for n, bank in enumerate(self._module.BANKS):
             records[f"count_{n}"] = lanes(parameters[0], bank)
         first = self._kind.from_address(records.ctypes.data)
