@@ -96,22 +96,21 @@ class Runs:
         if error := self.errors[k]:
             error.reached = self.reached(k)
             raise error
-        return self._run(k, self.times, self.states[k], self.sums[k])
+        return self._so_far(k)
 
     def reached(self, k: int) -> tuple[FloatArray, Trajectory]:
         """Return the times and run k until the end of its last step."""
         batch = self.batch
         t = batch.records["t"][k : k + 1]
         last = self._run(k, t, batch.x[k : k + 1], batch.ledgers[k, :1])
-        run = self._run(k, self.times, self.states[k], self.sums[k])
-        return run.until(self.times, float(t[0]), last)
+        return self._so_far(k).until(self.times, float(t[0]), last)
 
     def later(self, since: float) -> tuple[FloatArray, Trajectory]:
         """Return the first run at the samples that it has reached behind a time [s]."""
-        span = [since, self.batch.records["t"][0]]
-        rows = slice(*np.searchsorted(self.times, span, side="right").tolist())
-        times = self.times[rows]
-        return self._run(0, times, self.states[0, rows], self.sums[0, rows]).reached(times)
+        return self._so_far(0).later(self.times, float(self.batch.records["t"][0]), since)
+
+    def _so_far(self, k: int) -> Trajectory:
+        return self._run(k, self.times, self.states[k], self.sums[k])
 
     def _run(self, k: int, times: FloatArray, states: FloatArray, sums: FloatArray) -> Trajectory:
         """Return run k from its rows at some times; those that it has not reached are nan."""

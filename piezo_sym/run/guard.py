@@ -66,11 +66,6 @@ def stop_rows(module: GeneratedModule, p: Any, x: FloatArray, u: FloatArray) -> 
     return found
 
 
-def slack_of(initial: object, parameters: object) -> float:
-    """Return the slack of limits at the start: inf after another run, as SciPy keeps no limits."""
-    return np.inf if hasattr(initial, "data_vars") and not parameters else SLACK
-
-
 def check_limits(
     module: GeneratedModule, p: Any, x: FloatArray, u: FloatArray, slack: float = SLACK
 ) -> None:

@@ -117,8 +117,14 @@ class Inputs:
     @cached_property
     def jumps(self) -> frozenset[float]:
         """The start of the run, and of each segment before which an input jumps."""
-        after = (later.start for first, later in pairwise(self.segments) if any_jump(first, later))
-        return frozenset({self.start, *after})
+        found = {self.start}
+        for pair in pairwise(self.segments):
+            # five times, the ends among them, show the size of the inputs
+            before, after = (s.over(np.linspace(s.start, s.stop, 5)) for s in pair)
+            size = np.maximum(np.abs(before).max(axis=1), np.abs(after).max(axis=1))
+            if np.any(np.abs(after[:, 0] - before[:, -1]) > LEAST_JUMP * size):
+                found.add(pair[1].start)
+        return frozenset(found)
 
     @cached_property
     def max_step(self) -> float:
@@ -129,14 +135,6 @@ class Inputs:
     def longest_step(self) -> float:
         """Longest step [s] of methods with several stages per step."""
         return min((signal.longest_step(self.end) for signal in self.signals), default=inf)
-
-
-def any_jump(first: Segment, later: Segment) -> bool:
-    """Return whether an input jumps from one segment to the next."""
-    # five times, the ends among them, show the size of the inputs
-    before, after = (s.over(np.linspace(s.start, s.stop, 5)) for s in (first, later))
-    size = np.maximum(np.abs(before).max(axis=1), np.abs(after).max(axis=1))
-    return bool(np.any(np.abs(after[:, 0] - before[:, -1]) > LEAST_JUMP * size))
 
 
 def read_inputs(
@@ -186,10 +184,9 @@ def warn_undriven(module: GeneratedModule, before: Any, given: object) -> None:
         and np.any(before[r.name] != default)
     ]
     for record, default in left:
-        text = (
-            f"input '{record.name}' is not given, so it is {default:g} {record.unit}, its default"
-        )
-        text += ", from here on: the run that goes on had other values; give it again to keep it"
+        value = f"{default:g} {record.unit}, its default, from here on"
+        text = f"input '{record.name}' is not given, so it is {value}"
+        text += ": the run that goes on had other values; give it again to keep it"
         warnings.warn(text, InputWarning, stacklevel=6)
 
 

@@ -14,7 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -53,14 +53,10 @@ class Path:
     steps: int = 0
     evaluations: int = 0
 
-    def stops(self, times: FloatArray) -> FloatArray:
-        """Return the ends of its steps, and the times that lie in them."""
-        inner = times[(times > self.edges[0]) & (times <= self.edges[-1])]
-        return np.union1d(self.edges[1:], inner) if self.edges.size > 1 else self.edges
-
     def groups(self, times: FloatArray, most: int) -> list[FloatArray]:
-        """Return its `stops` in groups of at most so many."""
-        stops = self.stops(times)
+        """Return the ends of its steps, and the times that lie in them, at most so many in each."""
+        inner = times[(times > self.edges[0]) & (times <= self.edges[-1])]
+        stops = np.union1d(self.edges[1:], inner) if self.edges.size > 1 else self.edges
         return np.split(stops, range(most, stops.size, most))
 
     def point(self, t: float) -> tuple[FloatArray, FloatArray]:
@@ -117,10 +113,11 @@ def record(
             result = replace(result, steps=steps, evaluations=evaluations)
             for at in path.groups(times, most):
                 sums = total[:, None] + np.cumsum(increments(system, path, since, at), axis=1)
-                valid = in_domain(system, path, at)
+                states, u = path.states(at), path.segment.over(at)
+                valid = ~np.any(system.violated(states, u), axis=0)
+                valid &= np.all(system.finite(states, u), axis=0)
                 kept = np.isin(at, times) & (np.cumsum(~valid) == 0)
                 places = np.searchsorted(times, at[kept])
-                states = path.states(at)
                 result.states[:, places] = states[:, kept]
                 result.inputs[:, places] = system.inputs.at_samples(at[kept])
                 result.integrals[:, places] = sums[:, kept]
@@ -140,13 +137,6 @@ def record(
 def group_size(x: FloatArray) -> int:
     """Return the number of times in a group, for states x (n,)."""
     return max(1, min(MOST_STOPS, MOST_NUMBERS // x.size))
-
-
-def in_domain(system: DrivenModule, path: Path, stops: FloatArray) -> np.ndarray[Any, Any]:
-    """Return whether a run is in the domain and has finite rates, at times (k,)."""
-    x, u = path.states(stops), path.segment.over(stops)
-    violated = np.any(system.violated(x, u), axis=0)
-    return np.asarray(~violated & np.all(system.finite(x, u), axis=0))
 
 
 def exit_error(system: DrivenModule, path: Path, before: float, t: float) -> RunError:

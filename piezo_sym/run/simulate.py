@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from math import inf
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,7 @@ from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import METHOD, FixedStep, read_order, stages_for
 from piezo_sym.run.elements import read_outputs
-from piezo_sym.run.guard import slack_of
+from piezo_sym.run.guard import SLACK
 from piezo_sym.run.inputs import InputValue, warn_undriven
 from piezo_sym.run.method import checked_method, choose_method
 from piezo_sym.run.module import GeneratedModule, checked
@@ -182,8 +183,8 @@ def simulate(
     check_resolved(start, length)
     samples = sample_times(times, step, length, start)
     values, chosen = read_parameters(module, given), choose_method(module, named, step)
-    elements, slack = read_outputs(module, outputs), slack_of(initial, parameters)
-    options = dissipative_start, progress, elements, slack
+    slack = inf if hasattr(initial, "data_vars") and not parameters else SLACK  # SciPy keeps none
+    options = dissipative_start, progress, read_outputs(module, outputs), slack
     request = Request(module, values, inputs, chosen, tolerance, fixed, *options)
     if store is not None:
         return streamed(request, start, samples, state, (events, stop), store)

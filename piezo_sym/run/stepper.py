@@ -119,14 +119,11 @@ class Stepper:
         self.outputs = tuple(f"y_{record.name}" for record in module.OUTPUTS)
         self._u = np.tile(held.segments[0].at(0.0), (len(values), 1))
         self._y = np.zeros((len(values), len(self.outputs)))
-        stepping = Stepping(stages, 0.0, self._h, self._h, fixed=self._h)
-        self._plants = [
-            Plant(DrivenModule(module, p, held), engine, initial, stepping, u, y)
-            for p, u, y in zip(values, self._u, self._y, strict=True)
-        ]
+        how = Stepping(stages, 0.0, self._h, self._h, fixed=self._h)
+        rows = zip((DrivenModule(module, p, held) for p in values), self._u, self._y, strict=True)
+        self._plants = [Plant(system, engine, initial, how, u, y) for system, u, y in rows]
         steps, many = integer(every, "Stepper.every", 1), len(self._plants)
-        calls = (plant.record(steps, many) for plant in self._plants)
-        self._calls = (c_record("stepper") * many)(*calls)
+        self._calls = (c_record("stepper") * many)(*(p.record(steps, many) for p in self._plants))
         self._at = ctypes.byref(self._calls)
         self._once, self._forget = map(self._plants[0].batch.function, ("step_once", "forget"))
         self._x_quanta, self._y_quanta = read_quanta(quantum, module, values[0], self.outputs)

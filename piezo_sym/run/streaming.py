@@ -7,7 +7,7 @@ values there.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from os import PathLike, fspath
@@ -54,7 +54,10 @@ def streamed(
     written: xarray.Dataset | None = None
     signs: dict[str, float] = {}
     try:
-        for window in _windows(request, samples):
+        most = max(2, WINDOW // _numbers(request))
+        ends = [*range(0, samples.size - 1, most), samples.size - 1]
+        for first, last in pairwise(ends):  # each begins with the last sample of the one before
+            window = samples[first : last + 1]
             begin = start if written is None else float(window[0])
             planned = request.planned(begin, float(window[-1]) - begin, state)
             window = np.minimum(window, planned.system.inputs.end)  # by round-off
@@ -63,8 +66,8 @@ def streamed(
             with held_back():
                 written = _append(path, _timed(run, events, hits), written)
             request = replace(request, slack=np.inf)
-            last = run.isel(time=-1)
-            state = {record.name: last[record.name].values for record in request.module.STATES}
+            end = run.isel(time=-1)
+            state = {record.name: end[record.name].values for record in request.module.STATES}
             if "stopped" in run.attrs:
                 break
     except (RunError, KeyboardInterrupt) as stopped:
@@ -73,19 +76,10 @@ def streamed(
             with held_back():
                 written = _append(path, _timed(rest, events, hits), written)
         if written is not None:
-            vars(stopped)["partial"] = _open(
-                path, written, _write_events(path, written, hits, events)
-            )
+            vars(stopped)["partial"] = _finished(path, written, hits, events)
         raise
     assert written is not None  # there is one window at least
-    return _open(path, written, _write_events(path, written, hits, events))
-
-
-def _windows(request: Request, samples: FloatArray) -> Iterator[FloatArray]:
-    """Yield the sample times of each window, which begins with the last of the one before."""
-    most = max(2, WINDOW // _numbers(request))
-    for first, last in pairwise([*range(0, samples.size - 1, most), samples.size - 1]):
-        yield samples[first : last + 1]
+    return _finished(path, written, hits, events)
 
 
 def _numbers(request: Request) -> int:
@@ -153,33 +147,23 @@ def _write(window: xarray.Dataset, path: Path, **options: Any) -> None:
         raise FileError(f"cannot be written: {cause.strerror}", path_text(path)) from cause
 
 
-def _write_events(
-    path: Path,
-    last: xarray.Dataset,
-    hits: list[xarray.Dataset],
-    events: Iterable[str] | None,
-) -> list[str]:
-    """Write the events of all windows, and return the names of their quantities.
+def _finished(
+    path: Path, last: xarray.Dataset, hits: list[xarray.Dataset], events: Iterable[str] | None
+) -> xarray.Dataset:
+    """Write the events of all windows, and return the Dataset of the store.
 
-    The attributes of the store are replaced, too: by those of the last window.
+    The attributes of the store are replaced, too: by those of the last window. Its order is that of
+    the window, as Zarr keeps none.
     """
     import xarray
 
-    written: list[str] = []
+    written = [str(name) for name in last.data_vars]
     for event in (events or ()) if hits else ():
         names = [str(name) for name, values in hits[0].data_vars.items() if event in values.dims]
         with held_back():
             found = xarray.concat([window[names] for window in hits], dim=event)
             _write(found.assign_attrs(last.attrs), path, mode="a")
         written += names
-    return written
-
-
-def _open(path: Path, window: xarray.Dataset, events: list[str]) -> xarray.Dataset:
-    """Return the Dataset of a store, in the order of a window: Zarr keeps none."""
-    import xarray
-
     with held_back():
         consolidate(path)
-    run = xarray.open_dataset(path, engine="zarr", consolidated=False)
-    return run[[*window.data_vars, *events]]
+    return xarray.open_dataset(path, engine="zarr", consolidated=False)[written]

@@ -58,7 +58,9 @@ class Target:
     def along(self, values: FloatArray | tuple[Value, ...]) -> Self:
         """Return the target with values, one per point."""
         numbers = isinstance(values, np.ndarray) or all(map(is_number, values))
-        texts = () if numbers else distinct([label(value) for value in values])
+        texts = [] if numbers else [label(value) for value in values]
+        if len(set(texts)) < len(texts):
+            texts = [f"{n}: {text}" for n, text in enumerate(texts)]
         return replace(self, values=values, texts=tuple(texts))
 
     def part(self, points: slice) -> Self:
@@ -141,13 +143,6 @@ def label(value: Value) -> str:
     else:
         text = f"{value:g}" if is_number(value) else type(value).__name__
     return text if len(text) <= MOST_TEXT else f"{text[: MOST_TEXT - 3]}..."
-
-
-def distinct(texts: list[str]) -> list[str]:
-    """Return texts, all of them numbered if two are equal."""
-    if len(set(texts)) == len(texts):
-        return texts
-    return [f"{n}: {text}" for n, text in enumerate(texts)]
 
 
 @final
