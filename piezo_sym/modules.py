@@ -239,7 +239,7 @@ def _compiling_ahead(
     if stages is None:
         yield
         return
-    from piezo_sym.run.ahead import compile_ahead
+    from piezo_sym.run.method import compile_ahead
 
     module = write_module(temporary_folder() / f"{shape}-ahead", name, texts)
     compiling = Thread(target=compile_ahead, args=(module, stages), daemon=True)

@@ -7,7 +7,7 @@ after the jumps.  A pulse shorter than an interval of the search is found only b
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from math import nextafter
+from math import isfinite, nextafter
 from typing import Any, final
 
 import numpy as np
@@ -46,20 +46,8 @@ class InputFunction(Signal):
         times = np.asarray(t, dtype=float)
         values = self._at_once(times) if times.size > MANY else None
         if values is None:
-            values = self._one_by_one(times.ravel().tolist())
+            values = np.array([self.value(time) for time in times.ravel().tolist()])
         return values.reshape(times.shape)
-
-    def _one_by_one(self, times: list[float]) -> FloatArray:
-        """Return the values; raise `UsageError` for the first that is no finite number."""
-        try:
-            results = [self.function(time) for time in times]
-            plain = {type(value) for value in results} <= {float, int, np.float64}
-            values: FloatArray = np.array(results if plain else [], dtype=float)
-        except Exception:  # the user's own code: it may raise anything
-            plain = False
-        if plain and np.all(np.isfinite(values)):
-            return values
-        return np.array([self.value(time) for time in times])
 
     def _at_once(self, times: FloatArray) -> FloatArray | None:
         """Return the values of a function that takes arrays; None if it does not."""
@@ -86,6 +74,8 @@ class InputFunction(Signal):
         except Exception as cause:  # the user's own code: it may raise anything
             what = f"the function fails at t = {time:.6g} s: {type(cause).__name__}: {cause}"
             raise UsageError(what, self.where, "a function of the time in s") from cause
+        if type(value) is float and isfinite(value):  # which needs no name of its place
+            return value
         return number(value, f"{self.where}({time:.6g})")
 
     @cached_property

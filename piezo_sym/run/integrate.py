@@ -68,14 +68,10 @@ def accepted_steps(
                 )
             rest = replace(segment, start=float(solver.t))
             yield solver
-            if equal > MOST_EQUAL and crawls(tolerance, rest, trial):
+            least = max(MOST_LEFT * trial, NEAR * abs(rest.stop))  # too many more, or the end
+            crawls = tolerance.method == "LSODA" and equal > MOST_EQUAL
+            if crawls and rest.stop - rest.start > least:
                 spent, trial, solver, equal = solver.nfev, span, None, 0
-
-
-def crawls(tolerance: Tolerance, rest: Segment, step: float) -> bool:
-    """Return whether LSODA would take too many such steps, and can restart before the end."""
-    left = rest.stop - rest.start
-    return tolerance.method == "LSODA" and left > max(MOST_LEFT * step, NEAR * abs(rest.stop))
 
 
 def advance(solver: OdeSolver) -> OdeSolver:
@@ -100,14 +96,18 @@ def new_solver(
     import scipy.integrate
 
     make: Any = getattr(scipy.integrate, tolerance.method)
-    more: dict[str, Any] = {"jac": system.slope(segment)} if tolerance.method in IMPLICIT else {}
+    module, p, more = system.module, system.parameters, dict[str, Any]()
+    if tolerance.method in IMPLICIT:
+        more["jac"] = lambda t, x: module.jacobian(x, segment.at(t), p)
     span = segment.stop - segment.start
     if trial < span:
         more["first_step"] = trial
     more |= {"rtol": tolerance.rtol, "atol": tolerance.atol}
     more["max_step"] = min(system.inputs.max_step, span)
     with np.errstate(all="ignore"):
-        solver: OdeSolver = make(system.field(segment), segment.start, x, segment.stop, **more)
+        solver: OdeSolver = make(
+            lambda t, x: module.rhs(x, segment.at(t), p), segment.start, x, segment.stop, **more
+        )
     solver.nfev += evaluations
     return solver
 

@@ -1,6 +1,7 @@
 """The choice of a run's method, and its engine.
 
-Input: a generated module, the user's method and step, or None.  Output: a `ChosenMethod`.
+Input: a generated module, the user's method and step, or None.  Output: a `ChosenMethod`; before it
+is known that the module is proved, its engine and steps in the cache.
 
 The default is the discrete gradient, compiled.  A module without C beside it, such as one written
 by hand, runs by LSODA; so does one whose C cannot be compiled here, with one warning.  A method or
@@ -10,18 +11,28 @@ a step that the user named is never replaced: without an engine it is an error.
 import ctypes
 import os
 import warnings
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
+from threading import Thread
 from types import ModuleType
 from typing import final
 
-from piezo_sym.errors import EngineError, UsageError, listing, one_line, quote
+from piezo_sym.errors import EngineError, PiezoError, UsageError, listing, one_line, quote
 from piezo_sym.files import path_text
-from piezo_sym.run.collocation import METHOD
-from piezo_sym.run.engine.engine import Engine, engine_of
-from piezo_sym.run.engine.library import EngineWarning, cache_folder, read_source, source_path
+from piezo_sym.run.collocation import METHOD, layout_of
+from piezo_sym.run.engine.batch import steps_of
+from piezo_sym.run.engine.engine import Engine, engine_of, functions_of
+from piezo_sym.run.engine.library import (
+    EngineWarning,
+    Sources,
+    cache_folder,
+    library,
+    read_source,
+    source_path,
+)
 from piezo_sym.run.integrate import METHODS
-from piezo_sym.run.module import GeneratedModule
+from piezo_sym.run.module import GeneratedModule, row_count
 
 OFFERED = (METHOD, *METHODS)
 FALLBACK = "LSODA"
@@ -87,3 +98,22 @@ def _warn(name: str, why: str) -> None:
     """Warn that a model runs in NumPy, once in a process."""
     text = f"model '{name}' runs by {FALLBACK} in NumPy, not compiled by {METHOD}: {why}"
     warnings.warn(text, EngineWarning, stacklevel=6)
+
+
+def compile_ahead(module: GeneratedModule, stages: int) -> None:
+    """Compile what one run of a module needs with steps of `stages` stages, if possible."""
+    layout = layout_of(1, row_count(module.STATES, module.Parameters()), side_by_side=True)
+    with suppress(PiezoError, OSError):  # the run raises it
+        functions = functions_of(module)
+        steps = steps_of(module, functions, stages, layout)
+        beside = Thread(target=_compiled, args=(steps,), daemon=True)
+        beside.start()
+        try:
+            engine_of(module)
+        finally:
+            beside.join()
+
+
+def _compiled(sources: Sources) -> None:
+    with suppress(PiezoError, OSError):
+        library(sources)

@@ -3,7 +3,7 @@
 Input: a generated module, `Parameters`, `Inputs`.  Output: `DrivenModule`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, final
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from piezo_sym.run.checks import FloatArray
-from piezo_sym.run.inputs import Inputs, Segment
+from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.module import GeneratedModule, Record, heat_exchanges, held, rows
 
 FLOOR = 1e-15  # so that no tolerance is 0
@@ -70,16 +70,6 @@ class DrivenModule:
                 moved = (slope - np.diag(np.diag(slope))) @ sizes / pace
                 sizes = np.maximum(sizes, np.nan_to_num(moved, posinf=0.0))
         return np.asarray(ROUND_OFF * sizes)
-
-    def field(self, segment: Segment) -> Callable[[float, FloatArray], FloatArray]:
-        """Return dx/dt (n,) as a function of t and x in one segment."""
-        rhs, parameters = self.module.rhs, self.parameters
-        return lambda t, x: rhs(x, segment.at(t), parameters)
-
-    def slope(self, segment: Segment) -> Callable[[float, FloatArray], FloatArray]:
-        """Return the Jacobian (n, n) as a function of t and x in one segment."""
-        jacobian, parameters = self.module.jacobian, self.parameters
-        return lambda t, x: jacobian(x, segment.at(t), parameters)
 
     def margins(self, x: FloatArray, u: FloatArray) -> FloatArray:
         """Return each condition's margin, (conditions, *batch)."""

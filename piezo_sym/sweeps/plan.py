@@ -152,12 +152,6 @@ class Plan:
         sizes = {t.name: int(t.values[point[n]]) for n, t in self.swept() if t.is_size}
         return read_parameters(module, {**self.parameters, **sizes})
 
-    def names(self) -> Iterator[str]:
-        """Yield the names of the swept dimensions and their coordinates."""
-        for axis in self.axes:
-            yield axis.dim
-            yield from (name for name, _ in axis.coordinates())
-
 
 def largest_banks(axes: Iterable[Axis]) -> dict[str, int]:
     """Return the largest size of each bank whose size is swept."""
@@ -236,8 +230,5 @@ def refuse_reduction(reduce: object, reduce_by: object) -> None:
 def row_numbers(module: GeneratedModule, base: Any, axes: tuple[Axis, ...]) -> int:
     """Return the approximate number of values per sample of a run, at the largest sizes."""
     sizes = {bank: lanes(base, bank) for bank in module.BANKS} | largest_banks(axes)
-    count: dict[str | None, int] = {None: 1}
-    count.update(sizes)
-    states: int = sum(count[record.bank] for record in module.STATES)
-    processes: int = sum(count[record.bank] for record in module.PROCESSES)
-    return 4 * states + 4 * processes + 4 * len(module.OUTPUTS) + 8
+    records = (*module.STATES, *module.PROCESSES, *module.OUTPUTS)
+    return 4 * sum(sizes[record.bank] if record.bank else 1 for record in records) + 8

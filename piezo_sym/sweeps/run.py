@@ -81,7 +81,8 @@ class Group:
         reduced = (run_by_run if plan.each else all_at_once)(plan.reduce, runs, self.errors)
         if reduced is None:
             return {}, {}
-        refuse_names(map(str, reduced.variables), (*plan.names(), "error"))
+        taken = {name for axis in plan.axes for name, _ in axis.coordinates()}
+        refuse_names(map(str, reduced.variables), {*plan.dims, *taken, "error"})
         return as_quantities(reduced)
 
     def _blank(self) -> Quantities:

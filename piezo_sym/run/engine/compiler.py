@@ -18,7 +18,7 @@ from functools import cache, lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
-from typing import final
+from typing import Any, final
 
 from piezo_sym.errors import EngineError, one_line
 
@@ -62,6 +62,9 @@ FLAGS: tuple[tuple[str, ...], ...] = (
 VERSION_SECONDS, MOST_SECONDS = 10.0, 120.0
 #: Characters of a compiler's message in an error: a path and the reason after it.
 MOST_SAID = 400
+#: How a compiler is started: without input, in a group of its own.
+_ALONE: dict[str, Any] = {"stdin": subprocess.DEVNULL, "text": True, "errors": "replace"}
+_ALONE |= {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "start_new_session": True}
 #: Lines of /proc/cpuinfo that name instructions, on x86, ARM, RISC-V and POWER.
 _INSTRUCTIONS = ("flags", "features", "isa", "cpu", "cpu part", "model name")
 
@@ -156,7 +159,7 @@ def _call(seconds: float, *commands: Sequence[str]) -> list[subprocess.Completed
         with ExitStack() as stack:
             try:
                 for words in commands:
-                    running.append(stack.enter_context(_started(words)))
+                    running.append(stack.enter_context(subprocess.Popen(words, **_ALONE)))
                 said = [process.communicate(timeout=seconds) for process in running]
             except BaseException:  # it takes too long, or Ctrl-C: its children hold the pipes, too
                 for process in (one for one in running if one.returncode is None):
@@ -171,18 +174,6 @@ def _call(seconds: float, *commands: Sequence[str]) -> list[subprocess.Completed
     except (OSError, subprocess.SubprocessError) as error:
         why = getattr(error, "strerror", None) or type(error).__name__
         raise EngineError(f"the compiler does not run ({why})", commands[0][0]) from error
-
-
-def _started(words: Sequence[str]) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        words,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        errors="replace",
-        start_new_session=True,
-    )
 
 
 @cache

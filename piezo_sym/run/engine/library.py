@@ -244,7 +244,10 @@ def _digest(path: Path) -> str:
 def _build(sources: Sources, compiler: Compiler, flags: tuple[str, ...], path: Path) -> None:
     """Compile in a folder beside the library's path, then move the result there."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    _clean(path.parent)
+    for left in path.parent.glob(f"{BUILD}*"):  # by compilations that were killed an hour ago
+        with suppress(OSError):
+            if time.time() - left.stat().st_mtime > LEFT_SECONDS:
+                shutil.rmtree(left, ignore_errors=True)
     with tempfile.TemporaryDirectory(prefix=BUILD, dir=path.parent) as temporary:
         folder, texts = Path(temporary), sources.files()
         for name, text in texts.items():
@@ -283,14 +286,6 @@ def _keep(file: Path, path: Path) -> None:
         with one.open("rb+") as opened:
             os.fsync(opened.fileno())
         one.replace(path.with_name(one.name))
-
-
-def _clean(folder: Path) -> None:
-    """Remove the folders of compilations that were killed at least an hour ago."""
-    for left in folder.glob(f"{BUILD}*"):
-        with suppress(OSError):
-            if time.time() - left.stat().st_mtime > LEFT_SECONDS:
-                shutil.rmtree(left, ignore_errors=True)
 
 
 @cache
