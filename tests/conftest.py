@@ -169,12 +169,10 @@ def known_reports(shared_folder):
 
 def forget():
     """Forget all libraries that this process has loaded, and every warning given once."""
-    from piezo_sym.run import method
     from piezo_sym.run.engine import batch, engine, library
 
     for function in (
-        method._warn,
-        library._warn,
+        library.warn_once,
         engine._engine,
         batch.collocation_library,
     ):

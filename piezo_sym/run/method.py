@@ -10,10 +10,8 @@ a step that the user named is never replaced: without an engine it is an error.
 
 import ctypes
 import os
-import warnings
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
 from threading import Thread
 from types import ModuleType
 from typing import final
@@ -24,12 +22,12 @@ from piezo_sym.run.collocation import METHOD, layout_of
 from piezo_sym.run.engine.batch import steps_of
 from piezo_sym.run.engine.engine import Engine, engine_of, functions_of
 from piezo_sym.run.engine.library import (
-    EngineWarning,
     Sources,
     cache_folder,
     library,
     read_source,
     source_path,
+    warn_once,
 )
 from piezo_sym.run.integrate import METHODS
 from piezo_sym.run.module import GeneratedModule, row_count
@@ -71,7 +69,8 @@ def choose_method(module: GeneratedModule, method: str | None, step: object) -> 
         engine = _engine(module, file)
     except EngineError as error:
         if free:
-            _warn(module.NAME, str(error))
+            instead = f"runs by {FALLBACK} in NumPy, not compiled by {METHOD}"
+            warn_once(f"model '{module.NAME}' {instead}: {error}", 6)
             return ChosenMethod(FALLBACK, None, f"none: {error}")
         instead = f"leave out step, and take method='{FALLBACK}' for a run in NumPy"
         remedy = f"{error.remedy}; or {instead}" if error.remedy else instead
@@ -91,13 +90,6 @@ def _engine(module: GeneratedModule, file: str) -> Engine:
         raise EngineError("its C source was not kept", remedy=remedy)
     read_source(module, "_step.c")
     return engine_of(module)
-
-
-@lru_cache(maxsize=256)
-def _warn(name: str, why: str) -> None:
-    """Warn that a model runs in NumPy, once in a process."""
-    text = f"model '{name}' runs by {FALLBACK} in NumPy, not compiled by {METHOD}: {why}"
-    warnings.warn(text, EngineWarning, stacklevel=6)
 
 
 def compile_ahead(module: GeneratedModule, stages: int) -> None:

@@ -17,7 +17,6 @@ from piezo_sym.errors import RunError, UsageError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD, Ended, FixedStep, Watch, collocate, stages_for
 from piezo_sym.run.dataset import Trajectory, to_dataset
-from piezo_sym.run.elements import element_variables
 from piezo_sym.run.engine.batch import is_lossy
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.events import at_last, event_variables, locate, stop_margin
@@ -28,7 +27,7 @@ from piezo_sym.run.module import GeneratedModule
 from piezo_sym.run.parameters import LaneValue, read_initial
 from piezo_sym.run.scipy_runs import by_scipy, stop_cause
 from piezo_sym.run.system import DrivenModule
-from piezo_sym.run.watched import Watched
+from piezo_sym.run.watched import Watched, element_variables
 
 if TYPE_CHECKING:
     import xarray

@@ -20,7 +20,6 @@ from numpy.typing import ArrayLike
 from piezo_sym.errors import UsageError, quote
 from piezo_sym.run.checks import number, positive
 from piezo_sym.run.collocation import METHOD, FixedStep, read_order, stages_for
-from piezo_sym.run.elements import read_outputs
 from piezo_sym.run.guard import SLACK
 from piezo_sym.run.inputs import InputValue, warn_undriven
 from piezo_sym.run.method import checked_method, choose_method
@@ -28,7 +27,7 @@ from piezo_sym.run.module import GeneratedModule, checked
 from piezo_sym.run.parameters import LaneValue, read_parameters, sample_times, start_of
 from piezo_sym.run.planned import Request
 from piezo_sym.run.streaming import check_memory, streamed
-from piezo_sym.run.watched import read_watched
+from piezo_sym.run.watched import read_outputs, read_watched
 
 if TYPE_CHECKING:
     import xarray

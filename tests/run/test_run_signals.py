@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from piezo_sym import chirp, ramp, samples, simulate, sine, square, step, triangle
 from piezo_sym.errors import UsageError
-from piezo_sym.run.engine.signals import InputRecords, pieces_of
+from piezo_sym.run.engine.records import InputRecords, pieces_of
 from piezo_sym.run.inputs import Inputs, as_signal
 
 numbers = st.floats(-1e6, 1e6)

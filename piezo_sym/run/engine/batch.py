@@ -19,8 +19,7 @@ from piezo_sym.interrupts import held_back
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.library import Layout, Sources, read_source, shared_library
-from piezo_sym.run.engine.records import LONG, addresses, at, c_record, record_dtype
-from piezo_sym.run.engine.signals import InputRecords
+from piezo_sym.run.engine.records import LONG, InputRecords, addresses, at, c_record, record_dtype
 from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.module import GeneratedModule
 

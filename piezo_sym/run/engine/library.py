@@ -17,7 +17,7 @@ import warnings
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from subprocess import TimeoutExpired
 from typing import Literal, final
@@ -172,7 +172,7 @@ def library(sources: Sources) -> Path:
             if wanted := passed_by(compiler):
                 why = first.what if first else "it does not run"
                 taken = one_line(" ".join(compiler.command))
-                _warn(f"CC names {path_text(wanted)}, but {why}; {taken} is taken")
+                warn_once(f"CC names {path_text(wanted)}, but {why}; {taken} is taken", 2)
             return path
     if first:
         raise first
@@ -225,7 +225,7 @@ def _cached(sources: Sources, compiler: Compiler, flags: tuple[str, ...]) -> Pat
                 _build(sources, compiler, flags, path)
         except (OSError, FileError) as both:
             raise EngineError(why, where, remedy=remedy) from both
-        _warn(f"{where}: {why}; what is compiled is kept for this process alone; {remedy}")
+        warn_once(f"{where}: {why}; what is compiled is kept for this process alone; {remedy}", 2)
     return path
 
 
@@ -288,7 +288,7 @@ def _keep(file: Path, path: Path) -> None:
         one.replace(path.with_name(one.name))
 
 
-@cache
-def _warn(text: str) -> None:
+@lru_cache(maxsize=256)
+def warn_once(text: str, level: int) -> None:
     """Warn in one line, once in a process."""
-    warnings.warn(text, EngineWarning, stacklevel=2)
+    warnings.warn(text, EngineWarning, stacklevel=level)
