@@ -20,7 +20,7 @@ from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.library import Layout
 from piezo_sym.run.engine.records import DOUBLE
-from piezo_sym.run.inputs import Inputs, Segment
+from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.stuck import stuck_error
 from piezo_sym.run.system import QUIET, DrivenModule
 
@@ -197,7 +197,11 @@ def advance_from_jumps(
         if segment.start in inputs.jumps:
             batch.go_on(how, segment.start)
             advance(batch, watch)
-            dissipative_step(batch, how, *first_step(segment, times, how.fixed))
+            until = min([segment.stop, *times[times > segment.start][:1].tolist()])
+            span = until - segment.start
+            steps = max(1, ceil(span / how.fixed * (1 - ROUNDING)))
+            stop = until if steps == 1 else segment.start + span / steps
+            dissipative_step(batch, how, stop, span / steps)
     batch.go_on(how, inputs.end)
 
 
@@ -252,15 +256,6 @@ def read_order(order: object, where: str) -> int:
     if isinstance(order, bool) or not isinstance(order, int) or order not in ORDERS:
         raise UsageError(f"{quote(order)} is no order of steps", where, listing(map(str, ORDERS)))
     return order
-
-
-def first_step(segment: Segment, times: FloatArray, step: float) -> tuple[float, float]:
-    """Return where the first step of a segment ends, and its length [s]."""
-    later = times[times > segment.start]
-    until = min(segment.stop, float(later[0])) if later.size else segment.stop
-    span = until - segment.start
-    steps = max(1, ceil(span / step * (1 - ROUNDING)))
-    return (until if steps == 1 else segment.start + span / steps), span / steps
 
 
 def dissipative_step(batch: Batch, plain: Stepping, stop: float, length: float) -> None:

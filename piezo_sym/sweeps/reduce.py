@@ -166,14 +166,6 @@ def as_dataset(value: object) -> xarray.Dataset:
     return as_dataset(xarray.Dataset(parts))
 
 
-def refuse_names(names: Iterable[str], taken: Iterable[str]) -> None:
-    """Raise `UsageError` if a function's result has a name that the sweep uses."""
-    both = sorted(set(names) & set(taken))
-    if both:
-        what = f"the function gives '{both[0]}', which the sweep has, too"
-        raise UsageError(what, WHERE, "a name of its own")
-
-
 def as_quantities(results: xarray.Dataset) -> tuple[Quantities, Quantities]:
     """Return a function's results, and the coordinates of the dimensions that it added."""
     quantities = {

@@ -14,7 +14,7 @@ import numpy as np
 import xarray
 from numpy.typing import NDArray
 
-from piezo_sym.errors import PiezoError, RunError
+from piezo_sym.errors import PiezoError, RunError, UsageError
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.collocation import METHOD, Watch, collocate
 from piezo_sym.run.dataset import coordinates, lane_counts, named_rows
@@ -27,6 +27,7 @@ from piezo_sym.run.system import DrivenModule
 from piezo_sym.sweeps.plan import Plan
 from piezo_sym.sweeps.reduce import (
     MEMBER,
+    WHERE,
     Quantities,
     all_at_once,
     as_quantities,
@@ -34,7 +35,6 @@ from piezo_sym.sweeps.reduce import (
     of_runs,
     of_trajectory,
     over_time,
-    refuse_names,
     refuse_other_names,
     refuse_other_sizes,
     run_by_run,
@@ -82,7 +82,9 @@ class Group:
         if reduced is None:
             return {}, {}
         taken = {name for axis in plan.axes for name, _ in axis.coordinates()}
-        refuse_names(map(str, reduced.variables), {*plan.dims, *taken, "error"})
+        if both := sorted({*plan.dims, *taken, "error"} & {*map(str, reduced.variables)}):
+            what = f"the function gives '{both[0]}', which the sweep has, too"
+            raise UsageError(what, WHERE, "a name of its own")
         return as_quantities(reduced)
 
     def _blank(self) -> Quantities:

@@ -115,8 +115,10 @@ class Sources:
 
 def read_source(module: GeneratedModule, ending: str) -> str:
     """Return the text of ``<model><ending>`` beside a module, checked to be of its spec."""
-    file = source_path(module, ending)
-    text = _text(file)
+    file, text = source_path(module, ending), None
+    with suppress(OSError):  # there is no file; it is read again after a change
+        status = file.stat()
+        text = _read(file, status.st_mtime_ns, status.st_size)
     if text is None or f"spec sha256 {module.SPEC_SHA256}" not in text:
         what = "is missing" if text is None else "is of another spec than the module"
         raise EngineError(what, path_text(file), remedy="run `piezo-sym generate`")
@@ -127,15 +129,6 @@ def source_path(module: GeneratedModule, ending: str) -> Path:
     """Return the path of ``<model><ending>`` beside a module."""
     file = Path(getattr(module, "__file__", None) or f"{module.NAME}.py")
     return file.with_name(f"{module.NAME}{ending}")
-
-
-def _text(file: Path) -> str | None:
-    """Return a file's text, or None if there is no file; it is read again after a change."""
-    try:
-        status = file.stat()
-    except OSError:
-        return None
-    return _read(file, status.st_mtime_ns, status.st_size)
 
 
 @lru_cache(maxsize=64)
