@@ -49,17 +49,17 @@ def as_variables(evaluation: Evaluation) -> Quantities:
 def of_runs(runs: Runs, engine: Engine, u: FloatArray, kept: slice) -> Quantities:
     """Return every quantity of runs in C at the samples `kept`; `u` (m, nt) is at all samples."""
     system = runs.systems[0]
-    module, call = system.module, Members(engine, [one.parameters for one in runs.systems])
+    call = Members(engine, [one.parameters for one in runs.systems])
     x, u = np.ascontiguousarray(runs.states[:, kept]), np.ascontiguousarray(u[:, kept].T)
     first = np.ascontiguousarray(runs.start[:, None])
     with np.errstate(all="ignore"):
         values = {
-            "outputs": np.moveaxis(call("outputs", x, len(module.OUTPUTS), u), 2, 0),
-            "temperatures": np.moveaxis(call("temperatures", x, len(module.BODIES)), 2, 0),
-            "energy": call("energy", x, 1)[..., 0],
-            "entropy": call("entropy", x, 1)[..., 0],
+            "outputs": call("outputs", x, u),
+            "temperatures": call("temperatures", x),
+            "energy": call("energy", x),
+            "entropy": call("entropy", x),
         }
-        start = call("energy", first, 1)[..., 0], call("entropy", first, 1)[..., 0]
+        start = call("energy", first), call("entropy", first)
         states, sums = (np.moveaxis(one, 2, 0) for one in (x, runs.sums[:, kept]))
         return as_variables(
             Evaluation(system, states, None, values, start, sums, dims=(MEMBER, "time"))

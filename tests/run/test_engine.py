@@ -84,8 +84,8 @@ def test_runs_have_the_parameters_that_they_are_given(module):
     engine, state = engine_of(module), STATE[None, None]
     for masses in ([3.5e-3, 7e-3], [1e-3, 2e-3], [1e-3, 4e-3]) * 2:
         parameters = [module.Parameters(M=mass) for mass in masses]
-        found = Members(engine, parameters)("rhs", np.repeat(state, 2, 0), 6, INPUTS[None])
-        for row, p in zip(found[:, 0], parameters, strict=True):
+        found = Members(engine, parameters)("rhs", np.repeat(state, 2, 0), INPUTS[None])
+        for row, p in zip(found[..., 0].T, parameters, strict=True):
             assert np.array_equal(row, module.rhs(STATE, INPUTS, p))
 
 

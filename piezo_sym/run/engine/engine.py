@@ -102,7 +102,7 @@ class Engine:
     ) -> FloatArray:
         """Return a function's values; `more` is p, or u and p for a function of inputs."""
         *u, p = more
-        n, rows = row_count(self.module.STATES, p), self._rows(name, p)
+        n, rows = row_count(self.module.STATES, p), self.rows(name, p)
         states = _array(x, n, "states")
         batch, structure = states.shape[1:], self.structure(p)  # keeps its arrays of lanes alive
         columns = np.ascontiguousarray(states.reshape(n, prod(batch)))
@@ -119,7 +119,8 @@ class Engine:
         )
         return result
 
-    def _rows(self, name: str, p: Any) -> int:
+    def rows(self, name: str, p: Any) -> int:
+        """Return the number of rows of a function's values; of a single number, 1."""
         if name == "margins":
             return len(self.module.DOMAIN)
         return row_count(getattr(self.module, _ROWS[name]), p) if _ROWS[name] else 1
@@ -163,23 +164,21 @@ class Members:
     """The functions of a module for some runs of equal sizes, each with parameters of its own."""
 
     def __init__(self, engine: Engine, parameters: Sequence[Any]) -> None:
-        self._engine = engine
+        self._engine, self._first = engine, parameters[0]
         self._kept = engine.structure.many(parameters)
 
     def inside(self, x: FloatArray, u: FloatArray) -> NDArray[np.bool_]:
         """Return whether states (runs, k, n) lie in the domain with finite rates, (runs, k)."""
-        module = self._engine.module
-        margins = self("margins", x, len(module.DOMAIN), u)
-        finite = np.all(np.isfinite(self("rhs", x, x.shape[2], u)), axis=2)
-        return np.asarray(finite & np.all(held(module, np.moveaxis(margins, 2, 0)), axis=0))
+        finite = np.all(np.isfinite(self("rhs", x, u)), axis=0)
+        holds = np.all(held(self._engine.module, self("margins", x, u)), axis=0)
+        return np.asarray(finite & holds)
 
-    def __call__(
-        self, name: str, x: FloatArray, rows: int, u: FloatArray | None = None
-    ) -> FloatArray:
-        """Return a function's rows (runs, k, rows) of states (runs, k, n).
+    def __call__(self, name: str, x: FloatArray, u: FloatArray | None = None) -> FloatArray:
+        """Return a function's values at states (runs, k, n): (rows, runs, k), or (runs, k).
 
         Inputs (k, inputs), if it takes any, are the same for all runs; arrays are C-contiguous.
         """
+        rows = self._engine.rows(name, self._first)
         out = np.empty((*x.shape[:2], rows))
         inputs = np.empty((1, 0)) if u is None else u
         places = self._kept.addresses
@@ -187,4 +186,4 @@ class Members:
         arrays = at(x), at(inputs), at(out)
         runs = at(places), LONG(len(places))
         self._engine.function("of_runs")(self._engine.loop(name), *runs, *arrays, *sizes)
-        return out
+        return np.moveaxis(out, 2, 0) if _ROWS[name] else out[..., 0]
