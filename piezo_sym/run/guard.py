@@ -40,7 +40,7 @@ def check_start(system: DrivenModule, x: FloatArray, slack: float = SLACK) -> No
             raise domain_error(system, t, x, u)
         if not np.all(system.finite(x, u)):
             raise rate_error(system, t, x, u)
-        check_limits(system.module, system.parameters, x, u, slack)
+        check_limits(system, x, u, slack)
     except ArithmeticError as cause:
         what = f"the state at t = {t:g} s cannot be evaluated: {cause}"
         raise RunError(what, place(system), remedy="check the parameters") from cause
@@ -66,11 +66,9 @@ def stop_rows(module: GeneratedModule, p: Any, x: FloatArray, u: FloatArray) -> 
     return found
 
 
-def check_limits(
-    module: GeneratedModule, p: Any, x: FloatArray, u: FloatArray, slack: float = SLACK
-) -> None:
+def check_limits(system: DrivenModule, x: FloatArray, u: FloatArray, slack: float) -> None:
     """Raise `RunError` if a stop would start beyond its limit, from x (n,) under inputs u (m,)."""
-    stops = limited(module)
+    module, p, stops = system.module, system.parameters, limited(system.module)
     if not stops or slack == np.inf:
         return
     with np.errstate(all="ignore"):
@@ -84,7 +82,7 @@ def check_limits(
             what = f"stop '{stop}' starts beyond its limit{lane}: its effort is"
             what += f" {effort.flat[at]:.6g}, its limit {limit.flat[at]:.6g}"
             remedy = "change the initial state or the parameters of the stop"
-            raise RunError(what, f"model '{module.NAME}'", "abs(effort) <= limit", remedy)
+            raise RunError(what, place(system), "abs(effort) <= limit", remedy)
 
 
 def crossing(

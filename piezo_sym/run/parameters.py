@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     import xarray
 
 LaneValue: TypeAlias = float | Sequence[float] | FloatArray
+Given: TypeAlias = Mapping[str, LaneValue]
+Start: TypeAlias = "Given | xarray.Dataset"
 
 #: A sample nearer to the end than this part of the duration is the end.
 CLOSE = 1e-12
@@ -42,7 +44,7 @@ MOST_STEPS = 1e11
 LARGE, SHORTER = 1e-4, 300
 
 
-def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> Any:
+def read_parameters(module: GeneratedModule, given: Given | None) -> Any:
     """Return the module's parameters with those a user gave in place of the defaults."""
     default = module.Parameters()
     banks = {record.name: record.bank for record in module.PARAMETERS}
@@ -55,7 +57,7 @@ def read_parameters(module: GeneratedModule, given: Mapping[str, LaneValue] | No
     return replace(default, **changed, **{f"{bank}_count": n for bank, n in sizes.items()})
 
 
-def read_sizes(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, int]:
+def read_sizes(module: GeneratedModule, given: Given | None) -> dict[str, int]:
     """Return the number of lanes of each bank."""
     default, values = module.Parameters(), _checked_keys(module, given)
     sizes = {bank: values.get(f"{bank}_count", lanes(default, bank)) for bank in module.BANKS}
@@ -63,7 +65,7 @@ def read_sizes(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -
     return {b: integer(n, f"{where}.{b}_count", 1, MOST_LANES) for b, n in sizes.items()}
 
 
-def _checked_keys(module: GeneratedModule, given: Mapping[str, LaneValue] | None) -> dict[str, Any]:
+def _checked_keys(module: GeneratedModule, given: Given | None) -> dict[str, Any]:
     """Return a user's parameters and sizes; raise `UsageError` at an unknown name."""
     names = [record.name for record in module.PARAMETERS]
     counts = [f"{bank}_count" for bank in module.BANKS]
@@ -87,7 +89,7 @@ def lane_value(value: object, size: int | None, where: str) -> float | tuple[flo
 
 
 def read_initial(
-    module: GeneratedModule, parameters: Any, u: FloatArray, given: Mapping[str, LaneValue] | None
+    module: GeneratedModule, parameters: Any, u: FloatArray, given: Given | None
 ) -> FloatArray:
     """Return the state (n,) at t = 0, with inputs u (m,): the default, changed where given."""
     given = getattr(given, "initial", given)  # of an OperatingPoint
@@ -174,11 +176,8 @@ PARAMETER = "parameter_"
 
 
 def start_of(
-    module: GeneratedModule,
-    t0: float | None,
-    initial: Mapping[str, LaneValue] | xarray.Dataset | None,
-    parameters: Mapping[str, LaneValue] | None,
-) -> tuple[float, Mapping[str, LaneValue] | None, Mapping[str, LaneValue] | None]:
+    module: GeneratedModule, t0: float | None, initial: Start | None, parameters: Given | None
+) -> tuple[float, Given | None, Given | None]:
     """Return when a run starts [s], from which state, and with which parameters."""
     start = None if t0 is None else number(t0, "simulate.t0")
     run: Any = initial

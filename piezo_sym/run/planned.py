@@ -24,7 +24,7 @@ from piezo_sym.run.guard import SLACK, check_inputs, check_start
 from piezo_sym.run.inputs import InputValue, read_inputs
 from piezo_sym.run.method import ChosenMethod
 from piezo_sym.run.module import GeneratedModule
-from piezo_sym.run.parameters import LaneValue, read_initial
+from piezo_sym.run.parameters import Given, read_initial
 from piezo_sym.run.scipy_runs import by_scipy, stop_cause
 from piezo_sym.run.system import DrivenModule
 from piezo_sym.run.watched import Watched, element_variables
@@ -54,9 +54,7 @@ class Request:
     outputs: tuple[str, ...] = ()  # quantities of elements
     slack: float = SLACK  # of the stops' limits at the start
 
-    def planned(
-        self, start: float, duration: float, state: Mapping[str, LaneValue] | None
-    ) -> PlannedRun:
+    def planned(self, start: float, duration: float, state: Given | None) -> PlannedRun:
         """Return the run from a time [s] and a state, and check that it can start there."""
         inputs = read_inputs(self.module, self.inputs, duration, start)
         system = DrivenModule(self.module, self.parameters, inputs)

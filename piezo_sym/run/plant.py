@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias, final
+from typing import Any, final
 
 import numpy as np
 
@@ -28,15 +28,9 @@ from piezo_sym.run.guard import (
 )
 from piezo_sym.run.inputs import Inputs, read_inputs
 from piezo_sym.run.module import GeneratedModule, heat_exchanges, lanes, row_names
-from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters, start_of
+from piezo_sym.run.parameters import Given, Start, read_initial, read_parameters, start_of
 from piezo_sym.run.signals import Constant
 from piezo_sym.run.system import DrivenModule
-
-if TYPE_CHECKING:
-    import xarray
-
-Given: TypeAlias = Mapping[str, LaneValue]
-Start: TypeAlias = "Given | xarray.Dataset"
 
 #: The fractions of a call's time over which a failed state is extrapolated, to find the cause.
 AHEAD = (1e-6, 1e-4, 1e-2, 0.1, 0.3, 1.0)

@@ -25,7 +25,8 @@ from piezo_sym.run.engine.engine import engine_of
 from piezo_sym.run.engine.records import c_record
 from piezo_sym.run.guard import check_start
 from piezo_sym.run.module import GeneratedModule, checked, in_order, row_names
-from piezo_sym.run.plant import Given, Plant, Start, read_held, read_plants, read_quanta
+from piezo_sym.run.parameters import Given, Start
+from piezo_sym.run.plant import Plant, read_held, read_plants, read_quanta
 from piezo_sym.run.system import DrivenModule
 
 #: The longest delay of inputs, in calls.

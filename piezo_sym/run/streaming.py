@@ -21,7 +21,7 @@ from piezo_sym.files import consolidate, path_text, zarr_library
 from piezo_sym.interrupts import held_back
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.module import row_count
-from piezo_sym.run.parameters import LaneValue
+from piezo_sym.run.parameters import Given
 from piezo_sym.run.planned import Request
 from piezo_sym.run.watched import read_watched
 
@@ -43,7 +43,7 @@ def streamed(
     request: Request,
     start: float,
     samples: FloatArray,
-    state: Mapping[str, LaneValue] | None,
+    state: Given | None,
     watched: tuple[Mapping[str, str] | None, str | None],
     store: str | PathLike[str],
 ) -> xarray.Dataset:

@@ -32,7 +32,7 @@ def frame_of(plan: Plan, module: GeneratedModule) -> xarray.Dataset:
     base = read_parameters(module, {**plan.parameters, **sizes})
     system = DrivenModule(module, base, plan.inputs_at(module, plan.points[0]))
     by_function = callable(plan.reduce)
-    inputs = dict(inputs_of(plan, module, system))
+    inputs = dict(inputs_of(plan, system))
     coords = dict(coordinates(lane_counts(system), plan.samples))
     taken = {*coords, *inputs, "error", *(() if by_function else layout(system))}
     for axis in plan.axes:
@@ -50,10 +50,9 @@ def frame_of(plan: Plan, module: GeneratedModule) -> xarray.Dataset:
     return xarray.Dataset({} if by_function else inputs, coords, attrs_of(plan, system))
 
 
-def inputs_of(
-    plan: Plan, module: GeneratedModule, system: DrivenModule
-) -> Iterator[tuple[str, xarray.Variable]]:
+def inputs_of(plan: Plan, system: DrivenModule) -> Iterator[tuple[str, xarray.Variable]]:
     """Yield each input over time, or its last or mean value; swept ones are named `u_<input>`."""
+    module = system.module
     swept = {target.name: n for n, target in plan.swept() if target.kind == "inputs"}
     u = system.inputs.at_samples(plan.samples)
     named = enumerate(named_rows(system, ("time",), module.INPUTS, u))
