@@ -156,9 +156,10 @@ def collocate(
     """
     first = systems[0]
     how = stepping(first, accuracy, stages)
-    layout, extra = layout_of(*x.shape, side_by_side=side_by_side), 2 if starts else 0
+    layout = layout_of(len(x) if side_by_side else 1, x.shape[1])
     parameters = [system.parameters for system in systems]
-    batch = Batch(engine, parameters, x, first.inputs, times, how, layout, extra=extra)
+    given = engine, parameters, x, first.inputs, times, how, layout
+    batch = Batch(*given, extra=2 if starts else 0)
     runs = Runs(systems, x, times, batch.states, batch.sums, batch)
     try:
         if starts:
@@ -244,11 +245,11 @@ def stages_for(rtol: float) -> tuple[int, float]:
     return next((stages, part) for least, stages, part in STAGES if rtol >= least)
 
 
-def layout_of(runs: int, states: int, *, side_by_side: bool) -> Layout:
+def layout_of(runs: int, states: int) -> Layout:
     """Return what vectors hold in runs of this many states; results do not depend on it."""
     if states > MOST_STATES:
         return "lanes"
-    return "many" if runs > 1 and side_by_side else "one"
+    return "many" if runs > 1 else "one"
 
 
 def read_order(order: object, where: str) -> int:

@@ -94,7 +94,7 @@ def _engine(module: GeneratedModule, file: str) -> Engine:
 
 def compile_ahead(module: GeneratedModule, stages: int) -> None:
     """Compile what one run of a module needs with steps of `stages` stages, if possible."""
-    layout = layout_of(1, row_count(module.STATES, module.Parameters()), side_by_side=True)
+    layout = layout_of(1, row_count(module.STATES, module.Parameters()))
     with suppress(PiezoError, OSError):  # the run raises it
         functions = functions_of(module)
         steps = steps_of(module, functions, stages, layout)

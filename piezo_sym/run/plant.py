@@ -112,7 +112,7 @@ class Plant:
         check_start(system, x)
         self.system, self.start, self._step = system, x, stepping.fixed
         self.u, self.y = u, y
-        layout = layout_of(1, x.size, side_by_side=False)
+        layout = layout_of(1, x.size)
         given = engine, [system.parameters], x[None], system.inputs, np.empty(0)
         self.batch = Batch(*given, stepping, layout)
         self._kept = np.zeros(2 * x.size + self.batch.ledgers.size)

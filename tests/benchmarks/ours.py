@@ -47,7 +47,7 @@ def run_in_c(problem: Problem) -> Solver:
     @lru_cache(maxsize=2)
     def made(rtol: float) -> tuple[Batch, Stepping]:
         how = stepping(system, rtol, None)
-        layout = layout_of(*start.shape, side_by_side=True)
+        layout = layout_of(*start.shape)
         return Batch(engine, [system.parameters], start, system.inputs, times, how, layout), how
 
     def solve(rtol: float) -> FloatArray:
