@@ -20,8 +20,15 @@ from dataclasses import replace
 from typing import final
 
 from piezo_sym.algebra.lanes import Slot
-from piezo_sym.translation.c_forms import helper_is, lists
-from piezo_sym.translation.c_scope import Branch, CVariable, Deferred, File, Scope, kind_of
+from piezo_sym.translation.c_scope import (
+    Branch,
+    CVariable,
+    Deferred,
+    File,
+    Scope,
+    helper_is,
+    kind_of,
+)
 from piezo_sym.translation.expressions import refused
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import LEAST, Key, Rows
@@ -240,7 +247,7 @@ class CFunction:
         if rows.name == "margins" and self._is_least(role, place, at, node):
             return
         key = rows.key_at(at, self.scope.banks)
-        listed = lists(node, self.scope) if self.name == "initial_state" else []
+        listed = self.scope.listed(node) if self.name == "initial_state" else []
         if key is None or (listed and added):
             raise refused(place, "a place of another row")
         for lane, part in enumerate(listed):

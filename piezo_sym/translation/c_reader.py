@@ -11,9 +11,9 @@ and for the rest see `c_function`.  Helpers mean what their text says.  Nothing 
 """
 
 import ast
+import re
 
 from piezo_sym.expressions.functions import RECORDS
-from piezo_sym.translation.c_forms import add_helper, add_part, check_parts, is_part
 from piezo_sym.translation.c_function import CFunction
 from piezo_sym.translation.c_scope import File, kind_of
 from piezo_sym.translation.c_text import python_of
@@ -54,3 +54,30 @@ def read_c(text: str, known: Proved) -> dict[Key, Value]:
     if seen != SIGNATURES.keys():
         raise NotShownError("the C file lacks a function")
     return rows
+
+
+def is_part(node: ast.FunctionDef) -> bool:
+    """Return whether a function computes part of the rows of another function."""
+    return kind_of(node.returns) == "static void" and bool(re.search(r"_part_\d+$", node.name))
+
+
+def add_part(node: ast.FunctionDef, file: File) -> None:
+    """Record a part, which a later function calls."""
+    if node.name in file.parts:
+        raise NotShownError(f"{node.name} is defined twice")
+    file.parts[node.name] = node
+
+
+def check_parts(file: File) -> None:
+    """Refuse parts that no function calls."""
+    if left := file.parts.keys() - file.called:
+        raise NotShownError(f"{min(left)} is never called")
+
+
+def add_helper(node: ast.FunctionDef, file: File, allowed: str) -> None:
+    """Record a helper that the file defines; refuse one whose name does not match `allowed`."""
+    known = node.name in file.helpers or node.name in file.calls
+    kinds = {kind_of(arg.annotation) for arg in node.args.args}
+    if known or not re.fullmatch(allowed, node.name) or not kinds <= {file.number, "int"}:
+        raise NotShownError(f"a function {node.name} of the C file's own")
+    file.helpers[node.name] = node

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections import ChainMap
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import final
@@ -19,6 +19,7 @@ from piezo_sym.translation.expressions import PLAIN, TEST, WHOLE, Expressions, R
 from piezo_sym.translation.field import NotShownError, Value
 from piezo_sym.translation.known import Proved
 from piezo_sym.translation.signs import compare, on_path
+from piezo_sym.translation.zero import is_zero
 
 #: The comparison that each macro of a step stands for.
 _COMPARISONS = {"is_above": ">", "is_at_least": ">="}
@@ -236,6 +237,20 @@ class Scope:
                 return Scope(self.file, {}, names).read(value)[0]
         raise refused(node, "a call of what is more than an expression")
 
+    def listed(self, node: ast.expr) -> list[Deferred]:
+        """Return the entries of `listed` in ``j < n ? listed[j] : (double)NAN`` of length n."""
+        match node, self.lanes:
+            case ast.IfExp(
+                ast.Compare(ast.Name(j), [ast.Lt()], [ast.Constant(n)]),
+                ast.Subscript(ast.Name(name), ast.Name(k)),
+                ast.Name("NAN"),
+            ), [*_, (own, _)] if j == k == own:
+                found = self.names.get(name)
+                if isinstance(found, list) and n == len(found) > 1:
+                    fits = {part.scope.banks for part in found} <= {(), self.banks}
+                    return found if fits else []
+        return []
+
     def branch(self, place: Value) -> Branch:
         """Return the branch at a place; in a loop, the place of the first lane's, and the bank."""
         if not self.banks:
@@ -265,6 +280,16 @@ class Scope:
             switch = compare(">", switch.value, self.file.known.field.zero)
         switches[branch] = switch
         return switch
+
+
+def helper_is(file: File, name: str, function: Callable[..., Value], count: int) -> bool:
+    """Return whether a helper of the file is shown to equal `function` of `count` numbers."""
+    if name not in file.helpers:
+        return False
+    args = [file.known.field.name(f"{n} of {name}") for n in range(count)]
+    names = {f"a{n}": (arg, PLAIN) for n, arg in enumerate(args)}
+    call = ast.Call(ast.Name(name), [ast.Name(arg) for arg in names], [])
+    return is_zero(Scope(file, {}, ChainMap({**names})).read(call)[0] - function(*args))
 
 
 def kind_of(annotation: ast.expr | None) -> str:

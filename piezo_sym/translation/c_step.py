@@ -28,9 +28,9 @@ from dataclasses import replace
 from typing import final
 
 from piezo_sym.spec.elements.ports import Body, Storage
-from piezo_sym.translation.c_forms import add_helper, add_part, check_parts, helper_is, is_part
 from piezo_sym.translation.c_function import NOT_COMPARED, CFunction
-from piezo_sym.translation.c_scope import Branch, File, Scope, kind_of
+from piezo_sym.translation.c_reader import add_helper, add_part, check_parts, is_part
+from piezo_sym.translation.c_scope import Branch, File, Scope, helper_is, kind_of
 from piezo_sym.translation.c_step_parts import BENDS, SECTION, fixed_parts, macros_of
 from piezo_sym.translation.c_text import python_of
 from piezo_sym.translation.change import put, spelled
