@@ -204,15 +204,12 @@ class _Step:
                     pass
                 case _:
                     raise refused(part, "a statement")
-        known, field = self.file.known, self.field
-        places = known.layouts["rhs"].places
-        wanted = [places[-1], known.layouts["integrands"].places[-1], self._end(branches)]
-        processes = field.total(
-            known.sizes[slot.bank] if slot.bank else field.one
-            for slot in self.iphs.system.processes
+        known = self.file.known
+        states, means, booked, processes = (
+            known.layouts[name].places for name in ("rhs", "integrands", "ledger", "processes")
         )
-        wanted += [known.layouts["ledger"].places[-1], processes, self._end(slopes)]
-        wanted += [*known.sizes.values(), *places[:-1]]
+        wanted = [states[-1], means[-1], self._end(branches), booked[-1], processes[-1]]
+        wanted += [self._end(slopes), *known.sizes.values(), *states[:-1]]
         if found != [*wanted, *([] if bends is None else [self._end(bends)])]:
             raise NotShownError("the sizes of the step's arrays are not the system's")
 

@@ -59,6 +59,7 @@ def proved_step(iphs: IPHS) -> Proved:
     listed = of_system(read, dict(_heats(read, stops)))
     ledger = dict(_ledger(read, listed))
     slots |= {"rhs": iphs.system.states, "ledger": tuple(ledger)}
+    slots["processes"] = iphs.system.processes
     slots["g"] = (*slots["integrands"], *given_paths)
     paths = tuple(_paths(read, stops, slots, values))
     stage = {"rhs": listed["rhs"], "ledger": ledger.values()}
