@@ -118,14 +118,10 @@ def _differences(language: str, rows: Mapping[Key, Value], known: Proved) -> Ite
             yield _open(f"{place} is not written")
         elif found := _doubt(key, printed - wanted, edges_of(wanted) if matrix else frozenset()):
             tried += 1
-            at = witness(printed, wanted, known) if tried <= MOST_TRIED else None
-            reason = f"{place} {found}"
-            if at:
-                reason = f"{place} is {at.printed}, and {at.proved} is proved"
-            verdict = Verdict.REFUTED if at else Verdict.OPEN
-            yield Row("program", "", STATEMENT, verdict, at.point if at else None, reason)
-            if at:
+            if at := witness(printed, wanted, known) if tried <= MOST_TRIED else None:
+                yield Row("program", "", STATEMENT, Verdict.REFUTED, at[0], f"{place} {at[1]}")
                 return
+            yield _open(f"{place} {found}")
 
 
 def _doubt(key: Key, difference: Value, edges: Edges) -> str:

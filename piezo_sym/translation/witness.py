@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
 from math import isfinite
@@ -34,18 +33,8 @@ OPERATORS: Mapping[Hashable, str] = {1: ">", 0: "=", -1: "<"}
 X = Sym("x")
 
 
-@final
-@dataclass(frozen=True)
-class Witness:
-    """A point, as text, and what is printed and proved there."""
-
-    point: Mapping[str, str]
-    printed: str
-    proved: str
-
-
-def witness(printed: Value, wanted: Value, known: Proved) -> Witness | None:
-    """Return a point of the domain at which two values differ."""
+def witness(printed: Value, wanted: Value, known: Proved) -> tuple[Mapping[str, str], str] | None:
+    """Return a point of the domain, as text, where two values differ, and what both are there."""
     difference = printed - wanted
     size = len(difference.terms) + len(printed.terms) + len(wanted.terms)
     for point in islice(_points(known), max(2, min(POINTS, MOST_TERMS // size))):
@@ -57,7 +46,8 @@ def witness(printed: Value, wanted: Value, known: Proved) -> Witness | None:
         except UNDECIDED:
             continue
         if abs(found) > LEAST_SHARE * abs(other):
-            return Witness(point.texts(), f"{float(one):.9g}", f"{float(other):.9g}")
+            values = f"is {float(one):.9g}, and {float(other):.9g} is proved"
+            return {name: ", ".join(map(str, own)) for name, own in point.numbers.items()}, values
     return None
 
 
@@ -118,10 +108,6 @@ class WitnessPoint:
         self.numbers, self.gens = numbers, known.field.gens
         self.found: dict[tuple[object, ...], Any] = {}
         self.size = max(2, *map(len, numbers.values()))
-
-    def texts(self) -> dict[str, str]:
-        """Return the point as text."""
-        return {name: ", ".join(map(str, values)) for name, values in self.numbers.items()}
 
     def value(self, value: Value, lanes: Mapping[str, int]) -> Any:
         """Return a ball around a value; a row's lane is the first, a column's the second."""
