@@ -25,7 +25,7 @@ MOST_MAGNITUDE = 300
 MOST_WHOLE = 2**31 - 1
 _ARGUMENTS = {"choice": 3, "pow": 2, "copysign": 2, "minimum": 2, "maximum": 2, "clip": 3}
 #: NumPy's functions that return integers for integer arguments; these may overflow.
-_INTEGERS = frozenset({"abs", "sign", "minimum", "maximum", "clip", "sum"})
+_INTEGERS = frozenset({"abs", "sign", "minimum", "maximum", "clip"})
 _OPERATORS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
 
@@ -38,17 +38,12 @@ class Shape:
     #: "maybe" (lanes, if the parameters of a bank are lists), "lanes", "row" and "column" (lanes of
     #: the one or other axis of a matrix) and "pair".
     kind: str = ""
-    #: bank, other: the bank of the lanes; for a pair, the banks of row and column.
+    #: bank, other: the bank of an array's lanes; for a pair, the banks of row and column.
     bank: str = ""
     other: str = ""
     #: Whether it is a choice between equal integers, allowed only as a part of a real expression:
     #: arrays of integers wrap round, and C truncates their quotients.
     integers: bool = False
-
-    @property
-    def is_array(self) -> bool:
-        """Whether there is an axis of lanes, or may be."""
-        return bool(self.bank)
 
     @property
     def is_whole(self) -> bool:
@@ -256,8 +251,8 @@ def joined(left: Shape, right: Shape, node: ast.AST) -> Shape:
     """Return the shape of an operation on values of two shapes."""
     if left == right:
         return left
-    if not left.is_array or not right.is_array:
-        return left if left.is_array else right if right.is_array else PLAIN
+    if not left.bank or not right.bank:
+        return left if left.bank else right if right.bank else PLAIN
     kinds = {left.kind: left, right.kind: right}
     if kinds.keys() == {"maybe", "lanes"} and left.bank == right.bank:
         return kinds["lanes"]

@@ -105,8 +105,7 @@ def _needs(kind: str, value: Value) -> None:
 
 def _undefined(field: GeneratorField, kind: str) -> Value:
     """Return 1/0 or log(0) as a new name, and note a need that fails wherever it is chosen."""
-    if field.path is not None:
-        field.needs[Need(kind, field.zero, field.path, field.derived, field.outside)] = None
+    _needs(kind, field.zero)
     return field.generator("name", None, (f"not {kind}", None, 0))
 
 

@@ -113,7 +113,7 @@ class Rows:
 
     Attributes
     ----------
-    layout : the layout of the function's result.
+    layout, slots, size : the layout of the function's result, its slots, how many rows it has.
     found : the values written so far.
     zeros : whether entries that are not written are zero.
     """
@@ -121,20 +121,11 @@ class Rows:
     def __init__(self, known: Proved, name: str) -> None:
         self.known, self.name = known, name
         self.layout = known.layouts.get(name, Layout((), (known.field.zero,)))
+        self.slots, self.size = self.layout.slots, self.layout.places[-1]
         self.found: dict[Key, Value] = {}
         self.zeros = False
         self._counts = {g for size in known.sizes.values() for g in size.generators()}
         self._starts = {self._if_long(at): n for n, at in enumerate(self.layout.places[:-1])}
-
-    @property
-    def slots(self) -> tuple[Slot, ...]:
-        """The slots of its result."""
-        return self.layout.slots
-
-    @property
-    def size(self) -> Value:
-        """How many rows its result has."""
-        return self.layout.places[-1]
 
     def keep(self, key: Key, value: Value, *, added: bool = False) -> None:
         """Keep a written value; refuse to overwrite one, or to add to one that is not there."""
