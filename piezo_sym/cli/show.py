@@ -107,7 +107,7 @@ def _laws(model: Model, name: str, element: Element) -> Iterator[str]:
 
 
 def _starts(model: Model, name: str, element: Element, joined: Collection[str]) -> str:
-    symbols = [state.symbol for state in element.own_states(name)]
+    symbols = [*element.own_states(name)]
     starts = {one: str(model.initial.get(one, "0 (not said)")) for one in symbols}
     given = [one for one in starts if one in model.joined and one in model.initial]
     sums = {one: f"{model.joined[one]}*({starts[one]})" for one in given}

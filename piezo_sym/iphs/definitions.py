@@ -227,7 +227,7 @@ def check_stops(
         rate = named[symbols[port.rate]].xreplace(known)
         for other in sorted(efforts.keys() & rate.free_symbols, key=str):
             given = port.domain.variable(port.imposes)
-            name = kind_of("store", port.domain, port.imposes).name
+            name = kind_of("store", port.domain, port.imposes)
             where = "in series" if port.imposes is PowerVariable.THROUGH else "at its node"
             raise NetworkError(
                 f"the {given.name} of stop {quote(placed.element)} depends on the "

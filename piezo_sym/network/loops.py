@@ -118,7 +118,7 @@ def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slo
     names = listing(quote(placed.element) for placed, _ in members)
     what = f"{names} determine each other's flow"
     domain = next(p.domain for _, p in members if isinstance(p, DissipativePort))
-    store = kind_of("store", domain, PowerVariable.ACROSS).name
+    store = kind_of("store", domain, PowerVariable.ACROSS)
     between = f"put {with_article(store)} at the node between them"
     if len(group) > MOST:
         remedy = f"join those in series or in parallel, or {between}"

@@ -39,7 +39,7 @@ def _chain(bank: str, edges: list[Edge]) -> NetworkError:
     word = port.domain.through.name.replace("_", " ")
     names = _quoted([e.placed.element for e in edges])
     what = f"the {word} that cells in series share is fixed by {names}"
-    loose = kind_of("dissipation", port.domain).name
+    loose = kind_of("dissipation", port.domain)
     remedy = f"put a {loose} in parallel to them in each cell, or write the cells one by one"
     return NetworkError(what, f"banks.{bank}", f"a {port.domain.across.name} of each cell", remedy)
 
@@ -121,7 +121,7 @@ def _slipping(laws: Laws, edges: list[Edge]) -> list[Edge]:
 def _behind_inductor(slips: list[Edge]) -> tuple[str, str]:
     """Return the expectation and the remedy for capacitors that slip."""
     domain = slips[0].port.domain
-    inductor = with_article(kind_of("store", domain, THROUGH).name)
+    inductor = with_article(kind_of("store", domain, THROUGH))
     names = _quoted([edge.placed.element for edge in slips])
     free = f"a {domain.through.name} of {names} that is a state's, or an input"
     return free, f"put {inductor} in series with {names}"
@@ -144,7 +144,7 @@ def _massless(laws: Laws, edges: list[Edge]) -> tuple[str, str]:
         port = edge.port
         bare = [n for n in edge.branch if n not in moved and not is_reference(n)]
         if port.domain.mechanical and port.imposes is THROUGH and bare:
-            return bare[0], kind_of("store", port.domain, ACROSS).name
+            return bare[0], kind_of("store", port.domain, ACROSS)
     return "", ""
 
 
@@ -159,7 +159,7 @@ def _separation(ports: list[Imposing], mixed: bool) -> str:
         loose, stores = _kinds("dissipation", domains), _kinds("store", domains, ACROSS)
         return f"put {loose} between two of them, or {stores} at a node"
     (domain,) = domains
-    loose, spring = kind_of("dissipation", domain).name, kind_of("store", domain, THROUGH).name
+    loose, spring = kind_of("dissipation", domain), kind_of("store", domain, THROUGH)
     if ports[0].imposes is ACROSS:
         if domain.mechanical:
             return f"merge them into one, or put a {spring} or {loose} between them"
@@ -171,7 +171,7 @@ def _separation(ports: list[Imposing], mixed: bool) -> str:
 def _store_between(port: Imposing, node: str = "") -> str:
     """Return the advice to put a store between two elements that impose the same variable."""
     domain = port.domain
-    store = with_article(kind_of("store", domain, port.imposes.other).name)
+    store = with_article(kind_of("store", domain, port.imposes.other))
     if port.imposes is ACROSS:
         where = "between them" if domain.mechanical else "in series with one of them"
     else:
@@ -183,7 +183,7 @@ def _store_between(port: Imposing, node: str = "") -> str:
 
 def _kinds(role: str, domains: Iterable[PhysicalDomain], *imposes: PowerVariable) -> str:
     """Return the kinds of a role in some domains, as "a mass or capacitor"."""
-    return with_article(" or ".join(kind_of(role, domain, *imposes).name for domain in domains))
+    return with_article(" or ".join(kind_of(role, domain, *imposes) for domain in domains))
 
 
 def _unturnable(laws: Laws, edges: list[Edge]) -> list[tuple[str, DissipativePort]]:
@@ -230,7 +230,7 @@ def _undetermined(laws: Laws, singular: SingularError) -> NetworkError:
     known = list(branches(laws.circuit))
     own = [domain for _, branch, domain in known if not loose or loose[0] in branch]
     domain = own[0]
-    store, resistor = _kinds("store", (domain,), ACROSS), kind_of("dissipation", domain).name
+    store, resistor = _kinds("store", (domain,), ACROSS), kind_of("dissipation", domain)
     law = domain.across.name
     remedy = f"connect {store}, a source, or a {resistor} with a law for its {law} there"
     return NetworkError(f"nothing determines {at}", "network", remedy=remedy)

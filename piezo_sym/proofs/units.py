@@ -127,8 +127,7 @@ def _other_kind(fault: Check, model: Model) -> str:
     kinds = with_ratio_in(found, model.elements[fault.place.element])
     unit = _unit(fault.rule.left, fault.place, model).removeprefix("is ")
     return "".join(
-        f"; {with_article(kind.name)} takes {unit}{second and f' on {second}'}"
-        for kind, second in kinds
+        f"; {with_article(kind)} takes {unit}{second and f' on {second}'}" for kind, second in kinds
     )
 
 
@@ -140,7 +139,7 @@ def _other_field(fault: Check, model: Model) -> str:
     element, own = model.elements[place.element], place.where.rpartition(".")[2]
     if any(isinstance(node, If) for node in walk(fault.rule.left)):
         return _as_contact(fault, own)  # a stiffness that jumps is refused, too
-    marks = {f: mark for f, mark in element.law_fields() if f in element.row.form.one_of}
+    marks = {f: mark for f, mark in element.law_fields() if f in element.form.one_of}
     for field, mark in marks.items():
         alike = own in marks and mark.units == marks[own].units
         if alike and parse_unit(mark.unit).dimension == found:

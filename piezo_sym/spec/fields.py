@@ -243,4 +243,4 @@ class Tables(Frozen):
     @cached_property
     def _joined(self) -> dict[str, int]:  # private: iteration over a model skips such a name
         several = ((name, e) for name, e in self.elements.items() if e.joined > 1)
-        return {s.symbol: e.joined for name, e in several for s in e.own_states(name)}
+        return {s: e.joined for name, e in several for s in e.own_states(name)}

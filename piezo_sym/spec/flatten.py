@@ -203,14 +203,14 @@ def cells(spec: Tables, outside: set[str]) -> Iterator[Row]:
             node = partial(_cell_node, bank, outside | {*(table.series or ())}, place)
             more = {"bank": bank, "count": table.count, "series": table.series}
             shared = {node for _, node in element.named("node")} <= {*REFERENCES, *outside}
-            if shared and element.row.form.joins(element):
+            if shared and element.form.joins(element):
                 more = {"count": table.count}  # those of all cells have one across variable
             fields = Renaming({}, node=node).fields(element, name)
             yield f"{bank}_{name}", fields | more, Origin(place)
 
 
 def _check_cell_element(element: Element, place: str, where: str) -> None:
-    if not element.row.form.has_lanes:
+    if not element.form.has_lanes:
         what = f"a {element.kind} is in no cell of a bank"
         remedy = f"write it in [elements], with nodes that cells of {where} name, too"
         raise SpecError(what, place, "a store, a dissipative element, a stop or hysteron", remedy)

@@ -83,8 +83,8 @@ def _law_place(
 
 def state_dimensions(spec: Tables) -> dict[str, Dimension]:
     """Return the dimension of each state."""
-    elements = spec.elements.items()
-    return {s.symbol: _dimension(s.unit) for name, e in elements for s in e.own_states(name)}
+    own = (element.own_states(name).items() for name, element in spec.elements.items())
+    return {symbol: _dimension(unit) for states in own for symbol, unit in states}
 
 
 def _dimension(unit: str) -> Dimension:

@@ -84,7 +84,7 @@ def _element(kind: str, element: type[Element], kind_schema: Schema) -> Schema:
     """Return a kind's schema, in which `kind` and one of its alternative fields are required."""
     kind_schema["properties"]["kind"] = {"const": kind, "description": "The kind of this element."}
     kind_schema["required"] = ["kind", *kind_schema.get("required", ())]
-    if group := element.row.form.one_of:
+    if group := element.form.one_of:
         kind_schema["allOf"] = [{"oneOf": [{"required": [field]} for field in group]}]
     return kind_schema
 

@@ -35,7 +35,7 @@ def laws(spec: Tables) -> Iterator[LawField]:
 
 def states(spec: Tables) -> dict[str, str]:
     """Return the element of each state symbol, in declaration order."""
-    return {s.symbol: name for name, e in spec.elements.items() for s in e.own_states(name)}
+    return {s: name for name, e in spec.elements.items() for s in e.own_states(name)}
 
 
 def starts(spec: Tables, symbol: str) -> tuple[Expr, ...]:
@@ -133,7 +133,7 @@ def conditions(spec: Tables) -> tuple[Condition, ...]:
     required = [
         Condition(f"elements.{name}", test)
         for name, element in spec.elements.items()
-        for test in element.row.form.requires(element, name)
+        for test in element.form.requires(element, name)
     ]
     places: list[tuple[str, Node]] = [(w.where, in_words(spec, w, hot)) for w in laws(spec)]
     places += [*((c.where, c.tree) for c in assumed), *initial_laws(spec)]

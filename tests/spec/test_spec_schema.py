@@ -53,7 +53,7 @@ def sample(kind):
     fields = {"kind": kind}
     for name, info in KINDS[kind].model_fields.items():
         pair = "tuple" in str(info.annotation)
-        if info.is_required() or name in KINDS[kind].row.form.one_of[:1]:
+        if info.is_required() or name in KINDS[kind].form.one_of[:1]:
             fields[name] = ["a", "b"] if pair else "body"
     if kind == "storage":
         fields["states"] = {"q": {"rate": "force", "between": ["a", "b"]}}

@@ -11,7 +11,6 @@ from piezo_sym.expressions.dimensions import NONE, times
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS, kind_of
 from piezo_sym.spec.elements.domains import DOMAINS, PowerVariable
-from piezo_sym.spec.elements.kinds import TABLE
 from piezo_sym.spec.elements.marks import Letters
 from piezo_sym.spec.unit_text import PARTS, QUANTITIES, quantity, unit_text
 
@@ -66,8 +65,8 @@ def test_a_kind_gives_its_laws_and_letters_known_units(kind):
             assert quantity(parse_unit(unit).dimension, unit) == named, field
         for letter, unit in mark.units.items():
             assert unit == LETTERS.get(letter) or (letter == "v" and unit in {"V", "m/s"})
-    if KINDS[kind].row.form.letter and any(mark.units for mark in marks(kind).values()):
-        assert any(KINDS[kind].row.form.letter in mark.units for mark in marks(kind).values())
+    if KINDS[kind].form.letter and any(mark.units for mark in marks(kind).values()):
+        assert any(KINDS[kind].form.letter in mark.units for mark in marks(kind).values())
 
 
 def test_the_product_of_a_dissipative_law_and_its_letter_is_a_power():
@@ -93,14 +92,16 @@ def test_the_size_of_a_store_has_the_unit_of_its_law(domain):
     for imposes in PowerVariable:
         kind, costate = kind_of("store", domain, imposes), domain.variable(imposes)
         state, out = (parse_unit(u).dimension for u in (costate.state_unit, costate.unit))
-        size = times(out, state, -1) if "rest" in kind.fields else times(state, out, -1)
-        own = marks(kind.name)[kind.form.one_of[0]]
+        size = (
+            times(out, state, -1) if "rest" in KINDS[kind].model_fields else times(state, out, -1)
+        )
+        own = marks(kind)[KINDS[kind].form.one_of[0]]
         assert parse_unit(own.unit).dimension == size
 
 
 def test_a_ratio_has_the_unit_of_its_domains():
-    assert sum(len(kind.form.ratios) for kind in TABLE) == 9
-    for kind in TABLE:
+    assert sum(len(kind.form.ratios) for kind in KINDS.values()) == 9
+    for kind in KINDS.values():
         for first, second, unit in kind.form.ratios:
             given = first.through if kind.form.role == ("gyrator",) else first.across
             sizes = [parse_unit(u).dimension for u in (given.unit, second.across.unit)]

@@ -40,7 +40,7 @@ APART = "write lanes and dissipation apart from the store, which one storage can
 def check_energies(spec: Tables) -> None:
     """Check the fields and laws of elements that store energy."""
     for name, element in spec.elements.items():
-        if fault := element.row.form.fault(element):
+        if fault := element.form.fault(element):
             field, what, expected, remedy = fault
             raise SpecError(what, f"elements.{name}{field}", expected, remedy)
     warm = temperatures(spec)
@@ -141,7 +141,7 @@ def _needed(
     """
     known = {_normal_form(parse_condition(text, "domain.assume")) for text in spec.domain.assume}
     free: set[Expr] = {Sym(symbol) for symbol in states(spec)}
-    sizes = {n: spec.elements[n].row.form.requires(spec.elements[n], n) for n in stores}
+    sizes = {n: spec.elements[n].form.requires(spec.elements[n], n) for n in stores}
     needed = [condition for of_kind in sizes.values() for condition in of_kind]
     for name, port in ((name, port) for name, own in stores.items() for port in own):
         trees = reversed([*walk(replace(port.law, warm))])

@@ -9,7 +9,7 @@ from piezo_sym.expressions.incomplete import CONSTANTS
 from piezo_sym.expressions.tree import Mul, Node, Num, Sym, names, walk
 from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements import KINDS, LETTERS
-from piezo_sym.spec.elements.base import Element, state_symbol
+from piezo_sym.spec.elements.base import ENTROPY_UNIT, Element, state_symbol
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
@@ -254,7 +254,7 @@ def _state_in_law(spec: Tables, word: str, letters: tuple[str, ...], element: st
 def _beside_lane(spec: Tables, owner: str, bank: str, element: str) -> str:
     """Return how an element's law can use the state of `owner`, which is in a bank."""
     alone = "write the lanes as elements of their own, without count"
-    if not spec.elements[element].row.form.has_lanes:
+    if not spec.elements[element].form.has_lanes:
         return alone
     made = f"move {quote(element)} to [banks.{bank}.elements]"
     if bank == owner:
@@ -278,7 +278,7 @@ def _start_entropy(spec: Tables, word: str, start: object) -> str:
     if not body or word in spec.parameters or word in spec.inputs:
         return ""
     element = spec.elements[body]
-    state = next(s.symbol for s in element.own_states(body) if s.is_entropy)
+    state = next(s for s, unit in element.own_states(body).items() if unit == ENTROPY_UNIT)
     kelvin = start if isinstance(start, float) else 300.0
     return (
         f"give its entropy {quote(state)} ('c*log(T_start/T_0)' where the temperature is "

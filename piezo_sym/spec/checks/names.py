@@ -79,7 +79,7 @@ def _symbols(spec: Tables) -> Iterator[tuple[str, str]]:
     yield from ((name, f"parameters.{name}") for name in spec.parameters)
     yield from ((name, f"inputs.{name}") for name in spec.inputs)
     for name, element in spec.elements.items():
-        yield from ((state.symbol, f"elements.{name}") for state in element.own_states(name))
+        yield from ((symbol, f"elements.{name}") for symbol in element.own_states(name))
 
 
 def _check_case(elements: Iterable[str]) -> None:

@@ -73,8 +73,8 @@ def _remedy(condition: Condition, spec: Tables) -> str:
     advice, more = f"change {value} or the domain", without_default(spec, words)
     name = condition.where.removeprefix("elements.")
     element = spec.elements.get(name)
-    if element and element.row.form.role[:1] == ("store",):
-        size, law, _ = element.row.form.one_of
+    if element and element.form.role[:1] == ("store",):
+        size, law, _ = element.form.one_of
         if state_symbol(element, name) in words:  # perhaps the whole law
             advice += (
                 f"; a law of the {law.replace('_', ' ')} itself is given as {law}, not as {size}"
@@ -88,7 +88,7 @@ def _start_conditions(spec: Tables) -> Iterator[Condition]:
     """Yield the conditions that kinds impose on initial states."""
     for name, element in spec.elements.items():
         yield from (
-            Condition(f"elements.{name}", test) for test in element.row.form.starts(element, name)
+            Condition(f"elements.{name}", test) for test in element.form.starts(element, name)
         )
 
 

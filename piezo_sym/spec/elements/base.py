@@ -6,7 +6,7 @@ kind has a `Form`, which holds its fields, its docstring and its ports; see `for
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, Self, cast, final
+from typing import Any, ClassVar, Literal, Self, final
 
 from pydantic import (
     BaseModel,
@@ -53,20 +53,6 @@ class Frozen(BaseModel):
 
 
 @final
-@dataclass(frozen=True)
-class State:
-    """A state of an element: its symbol and its unit."""
-
-    symbol: str
-    unit: str
-
-    @property
-    def is_entropy(self) -> bool:
-        """Whether it is the entropy of a body."""
-        return self.unit == ENTROPY_UNIT
-
-
-@final
 @dataclass(frozen=True, eq=False)
 class Form:
     """What kinds are made of: a store, a dissipation, a coupling, a source, a body; see `forms`."""
@@ -94,59 +80,16 @@ class Form:
     ratios: tuple[tuple[PhysicalDomain, PhysicalDomain, str], ...] = ()
 
 
-@final
-@dataclass(frozen=True)
-class Kind:
-    """A row of the table of kinds."""
-
-    name: str  # as `kind` gives it in a spec
-    about: str  # what it is, on one line
-    form: Form  # its fields and its ports
-
-    @property
-    def fields(self) -> Fields:
-        """The fields of its elements."""
-        others = dict(self.form.fields)
-        nodes: Fields = {name: others.pop(name) for name in ("between", "at") if name in others}
-        lanes = self.form.has_lanes
-        types = {"count": Count | None, "bank": BankName, "series": Ends} if lanes else {}
-        count: Fields = {name: (kind, None, None) for name, kind in types.items()}
-        state: Fields = {"state": (StateName, None, None)} if self.form.letter else {}
-        return {**nodes, **count, **others, **state}
-
-    @property
-    def doc(self) -> str:
-        """The text of `piezo-sym kinds`, of the schema and of the type of its elements."""
-        lanes = (_LANES,) * self.form.has_lanes
-        return "\n\n".join((self.about, self.form.doc, *lanes, f"Example: {self.example}"))
-
-    @property
-    def example(self) -> str:
-        """An element of this kind, as a line of [elements]."""
-        given = {name: sample for name, (*_, sample) in self.fields.items() if sample}
-        return f"{self.name} = {inline({'kind': self.name, **given})}"
-
-    def element_type(self) -> "type[Element]":
-        """Return the pydantic type of its elements."""
-        title = "".join(word.capitalize() for word in self.name.split("_"))
-        fields: Any = {name: field[:2] for name, field in self.fields.items()}
-        fields["kind"] = (Literal[self.name], self.name)
-        fields |= {"__base__": Element, "__module__": MODULE, "__doc__": self.doc}
-        element = cast("type[Element]", create_model(title, **fields))
-        element.row = self
-        return element
-
-
 class Element(Frozen):
     """An element of a network; the type of each kind derives from it directly."""
 
-    row: ClassVar[Kind]
+    form: ClassVar[Form]
 
     kind: str
 
     @model_validator(mode="after")
     def _one_of_each(self) -> Self:
-        group = self.row.form.one_of
+        group = self.form.one_of
         given = [field for field in group if getattr(self, field) is not None]
         if group and len(given) != 1:
             none = "neither" if len(group) == 2 else "none"
@@ -161,26 +104,26 @@ class Element(Frozen):
 
     def ports(self, name: str) -> tuple[Port, ...]:
         """Return the ports of this element, called `name` in its spec."""
-        return self.row.form.ports(self, name, getattr(self, "between", ("", "")))
+        return self.form.ports(self, name, getattr(self, "between", ("", "")))
 
-    def own_states(self, name: str) -> tuple[State, ...]:
-        """Return the states of this element, called `name` in its spec, in order."""
+    def own_states(self, name: str) -> dict[str, str]:
+        """Return the unit of each state of this element, called `name` in its spec, in order."""
         if self.letter:
-            return (State(state_symbol(self, name), self.row.form.unit(self)),)
-        return tuple(State(word, s.unit) for word, s in getattr(self, "states", {}).items())
+            return {state_symbol(self, name): self.form.unit(self)}
+        return {symbol: state.unit for symbol, state in getattr(self, "states", {}).items()}
 
     def bank_of(self, name: str) -> str | None:
         """Return the bank of this element, called `name`: that of its cell, or one named after it.
 
         None if no `count` is given, or if all are joined; a count of 1 is a bank, too.
         """
-        given = getattr(self, "count", None) is not None and not self.row.form.joins(self)
+        given = getattr(self, "count", None) is not None and not self.form.joins(self)
         return (getattr(self, "bank", None) or name) if given else None
 
     @property
     def joined(self) -> int:
         """How many equal elements are joined into this one."""
-        return (getattr(self, "count", None) or 1) if self.row.form.joins(self) else 1
+        return (getattr(self, "count", None) or 1) if self.form.joins(self) else 1
 
     @property
     def chain(self) -> Branch | None:
@@ -195,12 +138,12 @@ class Element(Frozen):
     @property
     def is_body(self) -> bool:
         """Whether it has an entropy, and others may heat it."""
-        return any(state.is_entropy for state in self.own_states(""))
+        return ENTROPY_UNIT in self.own_states("").values()
 
     @property
     def letter(self) -> str:
         """The letter of its state; empty for those without one."""
-        return self.row.form.letter
+        return self.form.letter
 
     def law(self, field: str) -> Expr:
         """Return the tree of a law field."""
@@ -238,3 +181,39 @@ def state_symbol(element: Element, name: str) -> str:
     """Return the symbol of an element's state: as given, or from its letter and the name."""
     given = getattr(element, "state", None)
     return f"{element.letter}_{name}" if given is None else str(given)
+
+
+def element_type(name: str, about: str, form: Form) -> type[Element]:
+    """Return the pydantic type of a kind's elements.
+
+    Its docstring is the text of `piezo-sym kinds` and of the schema.
+
+    Parameters
+    ----------
+    name : the kind, as `kind` gives it in a spec.
+    about : what it is, on one line.
+    """
+    fields = _fields(form)
+    sample = {field: given for field, (*_, given) in fields.items() if given}
+    example = f"Example: {name} = {inline({'kind': name, **sample})}"
+    types: Any = {field: row[:2] for field, row in fields.items()}
+    types["kind"] = (Literal[name], name)
+    made = create_model(
+        "".join(word.capitalize() for word in name.split("_")),
+        __base__=Element,
+        __module__=MODULE,
+        __doc__="\n\n".join((about, form.doc, *(_LANES,) * form.has_lanes, example)),
+        **types,
+    )
+    made.form = form
+    return made
+
+
+def _fields(form: Form) -> Fields:
+    """Return all fields of a kind's elements: nodes, size of a bank, what is its form's, state."""
+    others = dict(form.fields)
+    nodes: Fields = {name: others.pop(name) for name in ("between", "at") if name in others}
+    types = {"count": Count | None, "bank": BankName, "series": Ends} if form.has_lanes else {}
+    lanes: Fields = {name: (kind, None, None) for name, kind in types.items()}
+    state: Fields = {"state": (StateName, None, None)} if form.letter else {}
+    return {**nodes, **lanes, **others, **state}

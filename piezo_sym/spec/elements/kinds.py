@@ -3,7 +3,7 @@
 A new kind is a row here, a row in ``tests/networks/kinds.py`` and a line in the checker's table.
 """
 
-from piezo_sym.spec.elements.base import Kind
+from piezo_sym.spec.elements.base import Form
 from piezo_sym.spec.elements.domains import (
     ELECTRICAL,
     HYDRAULIC,
@@ -54,85 +54,69 @@ _RACK = coupling("radius", "r", TRANSLATION, (ROTATION, "m"))
 _CYLINDER = coupling("area", "A", HYDRAULIC, (TRANSLATION, "m**2"), gyrates=True)
 _PUMP = coupling("displacement", "D", ROTATION, (HYDRAULIC, "m**3/rad"), gyrates=True)
 
-TABLE = (
-    Kind(
-        "spring", "A spring between two nodes, eqs. (9), (10) and the fourth term of (6).", _SPRING
-    ),
-    Kind("mass", "A mass at a node, eq. (10) and the third term of (6).", _MASS),
-    Kind("damper", "A damper between two nodes, the damping term of eq. (10).", _DAMPER),
-    Kind(
-        "stop",
+#: What each kind is, on one line, and its form.
+TABLE: dict[str, tuple[str, Form]] = {
+    "spring": ("A spring between two nodes, eqs. (9), (10) and the fourth term of (6).", _SPRING),
+    "mass": ("A mass at a node, eq. (10) and the third term of (6).", _MASS),
+    "damper": ("A damper between two nodes, the damping term of eq. (10).", _DAMPER),
+    "stop": (
         "An elastic-plastic element between two nodes: hysteresis at any rate, also the slowest.",
         _STOP,
     ),
-    Kind("lever", "An ideal lever between two pairs of nodes.", _LEVER),
-    Kind("force_source", "A force on a node, F_ext of eq. (10).", _FORCE),
-    Kind("velocity_source", "A velocity given to a node.", _VELOCITY),
-    Kind(
-        "capacitor",
-        "A capacitor between two nodes, eq. (11) and the first term of (6).",
-        _CAPACITOR,
-    ),
-    Kind(
-        "inductor",
+    "lever": ("An ideal lever between two pairs of nodes.", _LEVER),
+    "force_source": ("A force on a node, F_ext of eq. (10).", _FORCE),
+    "velocity_source": ("A velocity given to a node.", _VELOCITY),
+    "capacitor": ("A capacitor between two nodes, eq. (11) and the first term of (6).", _CAPACITOR),
+    "inductor": (
         "An inductor between two nodes, the storage half of a hysteron, eq. (12).",
         _INDUCTOR,
     ),
-    Kind("resistor", "A resistor between two nodes, V_R of section 3.2.", _RESISTOR),
-    Kind(
-        "hysteron",
+    "resistor": ("A resistor between two nodes, V_R of section 3.2.", _RESISTOR),
+    "hysteron": (
         "A hysteron, an inductor and a resistor in series: eq. (12), Assumption 2.",
         series(_INDUCTOR, _HYSTERESIS),
     ),
-    Kind("transformer", "An ideal transformer between two pairs of nodes.", _TRANSFORMER),
-    Kind("voltage_source", "A voltage between two nodes, V_in of eq. (12).", _VOLTAGE),
-    Kind("current_source", "A current given into a node.", _CURRENT),
-    Kind("inertia", "A moment of inertia at a node, the rotor of a machine.", _INERTIA),
-    Kind(
-        "torsion_spring", "A torsion spring between two nodes, an elastic shaft.", _TORSION_SPRING
-    ),
-    Kind("rotational_damper", "A rotational damper between two nodes, a bearing.", _BEARING),
-    Kind("gear", "An ideal gear between two pairs of nodes.", _GEAR),
-    Kind("torque_source", "A torque on a node.", _TORQUE),
-    Kind("angular_velocity_source", "An angular velocity given to a node.", _ANGULAR_VELOCITY),
-    Kind(
-        "accumulator",
+    "transformer": ("An ideal transformer between two pairs of nodes.", _TRANSFORMER),
+    "voltage_source": ("A voltage between two nodes, V_in of eq. (12).", _VOLTAGE),
+    "current_source": ("A current given into a node.", _CURRENT),
+    "inertia": ("A moment of inertia at a node, the rotor of a machine.", _INERTIA),
+    "torsion_spring": ("A torsion spring between two nodes, an elastic shaft.", _TORSION_SPRING),
+    "rotational_damper": ("A rotational damper between two nodes, a bearing.", _BEARING),
+    "gear": ("An ideal gear between two pairs of nodes.", _GEAR),
+    "torque_source": ("A torque on a node.", _TORQUE),
+    "angular_velocity_source": ("An angular velocity given to a node.", _ANGULAR_VELOCITY),
+    "accumulator": (
         "A hydraulic accumulator between two nodes, or the compressibility of a volume.",
         _ACCUMULATOR,
     ),
-    Kind(
-        "inertance",
+    "inertance": (
         "A hydraulic inertance between two nodes, the fluid in a line that moves.",
         _INERTANCE,
     ),
-    Kind("orifice", "An orifice between two nodes, a valve or the friction of a line.", _ORIFICE),
-    Kind("flow_source", "A flow given into a node.", _FLOW),
-    Kind("pressure_source", "A pressure between two nodes.", _PRESSURE),
-    Kind(
-        "transducer",
+    "orifice": ("An orifice between two nodes, a valve or the friction of a line.", _ORIFICE),
+    "flow_source": ("A flow given into a node.", _FLOW),
+    "pressure_source": ("A pressure between two nodes.", _PRESSURE),
+    "transducer": (
         "A piezoelectric transducer, the relations of Assumption 2: F = ratio*V, i = ratio*v.",
         _TRANSDUCER,
     ),
-    Kind(
-        "motor",
+    "motor": (
         "A voice coil or an electrical machine, without its coil, resistance and rotor.",
         _MOTOR,
     ),
-    Kind("rack", "A rack and pinion, or a drum with its rope.", _RACK),
-    Kind("cylinder", "A hydraulic cylinder: the pressure pushes its piston.", _CYLINDER),
-    Kind("pump", "A displacement pump, or a hydraulic motor.", _PUMP),
-    Kind(
-        "storage",
+    "rack": ("A rack and pinion, or a drum with its rope.", _RACK),
+    "cylinder": ("A hydraulic cylinder: the pressure pushes its piston.", _CYLINDER),
+    "pump": ("A displacement pump, or a hydraulic motor.", _PUMP),
+    "storage": (
         "A store with one energy of several states: variable inductance, gas and the like.",
         SHARED_ENERGY,
     ),
-    Kind("thermal_mass", "A body with a temperature, eqs. (8), (13).", BODY),
-    Kind("conduction", "Heat conduction between two bodies, a heat exchanger.", CONDUCTION),
-    Kind(
-        "thermoelectric",
+    "thermal_mass": ("A body with a temperature, eqs. (8), (13).", BODY),
+    "conduction": ("Heat conduction between two bodies, a heat exchanger.", CONDUCTION),
+    "thermoelectric": (
         "Thermoelectric couples, a Peltier cooler or a generator, without resistance.",
         THERMOCOUPLE,
     ),
-    Kind("ambient", "Heat exchange with the environment: the third input, eq. (8).", AMBIENT),
-    Kind("heat_source", "Heat into a body, a heater or a heat sink.", HEAT_SOURCE),
-)
+    "ambient": ("Heat exchange with the environment: the third input, eq. (8).", AMBIENT),
+    "heat_source": ("Heat into a body, a heater or a heat sink.", HEAT_SOURCE),
+}

@@ -47,7 +47,7 @@ class Letters:
     def of(self, element: Any) -> "Letters":
         """Return the letters and units of a law in one element."""
         given = (unit for field, unit in self.instead if getattr(element, field) is not None)
-        own = {state.symbol: state.unit for state in element.own_states("")} if self.own else {}
+        own = element.own_states("") if self.own else {}
         return replace(self, units={**self.units, **own}, unit=next(given, self.unit), instead=())
 
     def __get_pydantic_json_schema__(
