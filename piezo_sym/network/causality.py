@@ -33,13 +33,15 @@ def causal_laws(circuit: Circuit, symbols: SymbolTable) -> Laws:
     turned, followers = set[str](), frozenset[str]()
     while True:
         laws = Laws(circuit, symbols, followers)
-        contradiction = laws.contradiction()
-        if contradiction is None:
+        try:
+            laws.answers  # noqa: B018 - solved here, kept for later
+        except SingularError as contradiction:
+            found = _turned_resistor(laws, contradiction, turned)
+            if found is None:
+                followers |= dependent_states(laws, contradiction)
+                continue
+        else:
             return laws
-        found = _turned_resistor(laws, contradiction, turned)
-        if found is None:
-            followers |= dependent_states(laws, contradiction)
-            continue
         placed, port = found
         turned.add(placed.element)
         if len(turned) * len(laws.edges) > MOST_WORK:

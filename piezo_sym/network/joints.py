@@ -97,15 +97,16 @@ def join_stores(laws: Laws) -> tuple[Circuit, tuple[Joint, ...]]:
         for m in range(len(laws.followers))
     ]
     circuit, joints = laws.circuit, list[Joint]()
+    ratios = {port.name: port.ratio for _, port in circuit.of(Coupling)}
     for kept, followers in _groups(Z):
         states = [laws.states[n] for n in kept] + [laws.followers[m] for m in followers]
         stores = [(placed, port) for placed, port in states if isinstance(port, Storage)]
         rows = [{n: sp.S.One} for n in kept] + [Z[m] for m in followers]
         shares = sp.Matrix([[row.get(n, sp.S.Zero) for n in kept] for row in rows])
-        joint = _joint(circuit, stores, shares)
+        joint = _joint(stores, shares, ratios)
         _check_uses(circuit, joint)
         _check_starts(circuit.model, joint)
-        for (placed, _), port in zip(stores, _kept_stores(circuit, joint, shares), strict=False):
+        for (placed, _), port in zip(stores, _kept_stores(joint, shares, ratios), strict=False):
             circuit = circuit.replaced(placed, port)
         joints.append(joint)
     removed = [placed for placed, _ in laws.followers]
@@ -124,9 +125,10 @@ def _groups(Z: list[dict[int, sp.Expr]]) -> list[tuple[list[int], list[int]]]:
     return [(kept, sorted(followers)) for kept, followers in groups]
 
 
-def _joint(circuit: Circuit, stores: list[tuple[Placed, Storage]], shares: sp.Matrix) -> Joint:
+def _joint(
+    stores: list[tuple[Placed, Storage]], shares: sp.Matrix, ratios: Mapping[str, Expr]
+) -> Joint:
     """Return the joint of stores with their rows of Z, the kept ones first."""
-    ratios = _ratios(circuit)
     members = [
         Member(
             placed.element,
@@ -150,10 +152,6 @@ def _joint(circuit: Circuit, stores: list[tuple[Placed, Storage]], shares: sp.Ma
     return Joint(tuple(members[:count]), tuple(members[count:]))
 
 
-def _ratios(circuit: Circuit) -> dict[str, Expr]:
-    return {port.name: port.ratio for _, port in circuit.of(Coupling)}
-
-
 def _compliance(store: Storage) -> Expr:
     """Return 1/Q of a store with a quadratic energy."""
     slope = constant_slope(store.law, store.state) or ONE
@@ -170,10 +168,10 @@ def _rest(store: Storage) -> Expr:
     return neg(mul(_compliance(store), inserted(store.law, {store.state: ZERO})))
 
 
-def _kept_stores(circuit: Circuit, joint: Joint, Z: sp.Matrix) -> Iterator[Storage]:
+def _kept_stores(joint: Joint, Z: sp.Matrix, ratios: Mapping[str, Expr]) -> Iterator[Storage]:
     """Yield the kept stores with the energy of all: e_r = A^-1 y."""
     sizes = [sp.Dummy() for _ in joint.members]  # their compliances
-    A, ratios = Z.T * sp.diag(*sizes) * Z, _ratios(circuit)
+    A = Z.T * sp.diag(*sizes) * Z
 
     def tree(expr: sp.Expr) -> Expr:
         """Return a polynomial in compliances, its terms in the order of their stores."""

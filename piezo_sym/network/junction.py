@@ -114,15 +114,19 @@ class _Blocks:
             symbol for block in (B, D) for e in block.full.values() for symbol in e.free_symbols
         }
         divisors = map(self.laws.expression, self.laws.divisors)
+        # conduction takes entropy from its first body, and heat inputs bring it into theirs
+        processes, ports = enumerate(self.laws.processes), enumerate(self.laws.ports)
+        cooled = {n: port.first for n, (_, port) in processes if isinstance(port, Conductor)}
+        warmed = {n: port.body for n, (_, port) in ports if isinstance(port, Exchange | HeatInput)}
         return Junction(
             circuit=circuit,
             states=self.slots["E"],
             processes=self.slots["W"],
             ports=self.slots["u"],
             J0=J0 - loops.between(B, B),
-            B=self._with_conduction(B),
+            B=self._with_entropies(B, cooled),
             D=D,
-            g=self._with_heat(g - loops.between(B, D)),
+            g=self._with_entropies(g - loops.between(B, D), warmed),
             N=N + loops.between(D, D),
             slopes=loops.slopes,
             shares=tuple(share for share in loops.shares if share[0] in used),
@@ -153,20 +157,7 @@ class _Blocks:
         terms = [(*term_of(label), coefficient) for label, coefficient in form.items()]
         return {(row, n): sign * self.laws.expression(c) for kind, n, c in terms if kind == col}
 
-    def _with_conduction(self, B: LaneMatrix) -> LaneMatrix:
-        """Return B with the conductions: each takes entropy from its first body."""
-        taken = {
-            (self.rows[port.first], n): sp.S.One
-            for n, (_, port) in enumerate(self.laws.processes)
-            if isinstance(port, Conductor)
-        }
-        return replace(B, full={**B.full, **taken})
-
-    def _with_heat(self, g: LaneMatrix) -> LaneMatrix:
-        """Return the input map with the heat inputs, each into its body's entropy."""
-        heat = {
-            (self.rows[port.body], n): sp.S.One
-            for n, (_, port) in enumerate(self.laws.ports)
-            if isinstance(port, Exchange | HeatInput)
-        }
-        return replace(g, full={**g.full, **heat})
+    def _with_entropies(self, matrix: LaneMatrix, bodies: Mapping[int, str]) -> LaneMatrix:
+        """Return B or g with a 1 in each column of `bodies`, in the row of its body's entropy."""
+        ones = {(self.rows[body], n): sp.S.One for n, body in bodies.items()}
+        return replace(matrix, full={**matrix.full, **ones})

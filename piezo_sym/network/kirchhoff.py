@@ -8,7 +8,7 @@ eliminated first.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, final
 
 import sympy as sp
@@ -18,7 +18,6 @@ from piezo_sym.algebra.linear import (
     Equation,
     Form,
     LongError,
-    SingularError,
     accumulate,
     combine,
     solve,
@@ -47,6 +46,8 @@ MOST_WORK = 20_000_000
 Answer = tuple[Form, Form]
 #: A port of an input.
 Driven = Source | Exchange | HeatInput
+#: A port that imposes a variable on a branch.
+Imposing = Storage | DissipativePort | Source | Body
 
 
 @final
@@ -59,7 +60,7 @@ class Edge:
     """
 
     placed: Placed
-    port: Storage | DissipativePort | Source | Body
+    port: Imposing
     branch: Branch
     imposes: PowerVariable
     key: tuple[str, int]
@@ -97,7 +98,7 @@ class Laws:
         self.circuit, self.symbols = circuit, symbols
         self.banks = tuple(symbols.counts)
         couplings = [port for _, port in circuit.of(Coupling)]
-        letters = {port: _letter(n) for n, port in enumerate(couplings)}
+        letters = {port: sp.Symbol(f"ratio_{n}") for n, port in enumerate(couplings)}
         self.field = QQ.frac_field(*letters.values()) if letters else QQ
         self.ratio = {port: self.field.from_sympy(letter) for port, letter in letters.items()}
         self._names = {letter: symbols[port.name] for port, letter in letters.items()}
@@ -110,20 +111,14 @@ class Laws:
         self.divisors: list[Any] = []
 
     def _edges(self) -> Iterator[Edge]:
-        for n, (placed, store) in enumerate(self.states):
-            if isinstance(store, Storage):
-                yield Edge(placed, store, store.branch, store.imposes, ("E", n), 1)
-            elif branch := self.circuit.pumped.get(placed.element):
-                yield Edge(placed, store, branch, store.imposes, ("E", n), 1)
-        for n, (placed, last) in enumerate(self.followers):
-            yield Edge(placed, last, last.branch, last.imposes.other, ("R", n), 1)
-        for n, (placed, process) in enumerate(self.processes):
-            if isinstance(process, DissipativePort):
-                yield Edge(placed, process, process.branch, process.imposes, ("W", n), 1)
-        for n, (placed, port) in enumerate(self.ports):
-            if isinstance(port, Source):
-                sign = 1 if port.imposes is PowerVariable.ACROSS else -1  # it pushes into a
-                yield Edge(placed, port, port.branch, port.imposes, ("u", n), sign)
+        given = {"E": self.states, "R": self.followers, "W": self.processes, "u": self.ports}
+        for kind, ports in given.items():
+            for n, (placed, port) in enumerate(ports):
+                branch = getattr(port, "branch", self.circuit.pumped.get(placed.element))
+                if branch and isinstance(port, Imposing):
+                    imposes = port.imposes.other if kind == "R" else port.imposes
+                    pushes = kind == "u" and imposes is PowerVariable.THROUGH  # into its first node
+                    yield Edge(placed, port, branch, imposes, (kind, n), -1 if pushes else 1)
 
     @cached_property
     def answers(self) -> dict[tuple[str, int], Answer]:
@@ -146,14 +141,6 @@ class Laws:
     def expression(self, coefficient: Any) -> sp.Expr:
         """Return a coefficient as an expression in the ratios' own symbols."""
         return self.field.to_sympy(coefficient).xreplace(self._names)
-
-    def contradiction(self) -> SingularError | None:
-        """Return why the laws have no single solution, or None if they have one."""
-        try:
-            self.answers  # noqa: B018 - solved here, kept for later
-        except SingularError as singular:
-            return singular
-        return None
 
     def _balances(self, bank: str | None) -> dict[str, Equation]:
         """Return the sum of through variables at each node, of a bank's or the other branches."""
@@ -264,12 +251,6 @@ class Laws:
         for label in [label for label in lane if label in shared]:
             combine(full, shared[label], lane.pop(label))
         return full, lane
-
-
-@cache
-def _letter(n: int) -> sp.Symbol:
-    """Return the symbol of ratio n; cached, as the same object compares faster."""
-    return sp.Symbol(f"ratio_{n}")
 
 
 def _across(branch: Branch, factor: Any) -> Form:

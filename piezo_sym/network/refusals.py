@@ -9,14 +9,13 @@ from collections.abc import Iterable
 from piezo_sym.algebra.linear import Form, SingularError
 from piezo_sym.errors import NetworkError, with_article
 from piezo_sym.network.inverse import turn
-from piezo_sym.network.kirchhoff import Edge, Laws, term_of
+from piezo_sym.network.kirchhoff import Edge, Imposing, Laws, term_of
 from piezo_sym.network.nodes import branches, is_inner, is_reference
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import THERMAL, PhysicalDomain, PowerVariable
-from piezo_sym.spec.elements.ports import Body, Coupling, DissipativePort, Source, Storage
+from piezo_sym.spec.elements.ports import Coupling, DissipativePort, Storage
 
-Imposing = Storage | DissipativePort | Source | Body
 ACROSS, THROUGH = PowerVariable.ACROSS, PowerVariable.THROUGH
 
 MIXED = "variables"

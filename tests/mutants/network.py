@@ -32,12 +32,12 @@ a coupling is left out
   = transducer_between_moving_nodes
 ## network/junction
 conduction leaves the second body
-  - (self.rows[port.first], n): sp.S.One
-  + (self.rows[port.second], n): sp.S.One
+  - n: port.first for
+  + n: port.second for
   = two airs
 heat comes to another body
-  - (self.rows[port.body], n): sp.S.One
-  + (min(self.rows[e] for e in ("body", "hot") if e in self.rows), n): sp.S.One
+  - n: port.body for
+  + n: next(e for e in ("body", "hot") if e in self.rows) for
   = two airs
 resistors in a loop push the other way
   - J0=J0 - loops.between(B, B),
@@ -48,12 +48,12 @@ resistors in a loop do not change J0
   + J0=J0,
   = coil loop
 a source does not see a loop
-  - g=self._with_heat(g - loops.between(B, D)),
-  + g=self._with_heat(g),
+  - g=self._with_entropies(g - loops.between(B, D), warmed),
+  + g=self._with_entropies(g, warmed),
   = driven coil loop
 a source sees a loop from the other side
-  - g=self._with_heat(g - loops.between(B, D)),
-  + g=self._with_heat(g + loops.between(B, D)),
+  - g=self._with_entropies(g - loops.between(B, D), warmed),
+  + g=self._with_entropies(g + loops.between(B, D), warmed),
   = driven coil loop
 ports see a loop from the other side
   - N=N + loops.between(D, D),
@@ -68,8 +68,8 @@ shares are left out of what drives processes
   + B, D = loops.columns(B), D
   = driven coil loop
 no heat is exchanged
-  - if isinstance(port, Exchange | HeatInput)
-  + if False
+  - for n, (_, port) in ports if isinstance(port, Exchange | HeatInput)
+  + for n, (_, port) in ports if False
   = two airs
 states are coupled the other way
   - J0, N = self._block("E", "E"), self._block("u", "u")
