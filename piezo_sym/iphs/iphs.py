@@ -68,6 +68,16 @@ class Process:
     gamma: sp.Expr
 
 
+def _matrix(name: str, doc: str) -> cached_property[Matrix]:
+    """Return a property of an `IPHS`: a matrix of its `system` as a function of states."""
+
+    def matrix(iphs: IPHS) -> Matrix:
+        return iphs.written_out(getattr(iphs.system, name))
+
+    matrix.__doc__ = doc
+    return cached_property(matrix)
+
+
 @final
 @dataclass(frozen=True, repr=False)
 class IPHS:
@@ -105,12 +115,11 @@ class IPHS:
     def x(self) -> Matrix:
         """State vector, n by 1."""
         names = {n: self.symbols[slot.label] for n, slot in enumerate(self.system.states)}
-        return self._written_out(vector(self.system.states, self.system.E.lanes, names))
+        return self.written_out(vector(self.system.states, self.system.E.lanes, names))
 
-    @cached_property
-    def u(self) -> Matrix:
-        """Inputs of Definition 1, one per port; a heat exchange enters as lam*(T_e/T - 1)."""
-        return self._written_out(self.system.u)
+    u = _matrix(
+        "u", "Inputs of Definition 1, one per port; a heat exchange enters as lam*(T_e/T - 1)."
+    )
 
     @cached_property
     def U(self) -> sp.Expr:
@@ -132,40 +141,13 @@ class IPHS:
         rows = zip(self.system.states, self.system.dS, strict=True)
         return sp.Add(*(self.symbols[slot.label] for slot, one in rows if one != 0))
 
-    @cached_property
-    def E(self) -> Matrix:
-        """Co-states dU/dx, n by 1."""
-        return self._written_out(self.system.E)
-
-    @cached_property
-    def J0(self) -> Matrix:
-        """Structure matrix of the energy-preserving elements, n by n, eq. (15)."""
-        return self._written_out(self.system.J0)
-
-    @cached_property
-    def J_ir(self) -> Matrix:
-        """Structure matrix J0 + sum_k R_k J_k, n by n, eq. (3)."""
-        return self._written_out(self.system.J_ir)
-
-    @cached_property
-    def g(self) -> Matrix:
-        """Input map, n by ports."""
-        return self._written_out(self.system.g)
-
-    @cached_property
-    def rhs(self) -> Matrix:
-        """Rates dx/dt, n by 1, eq. (1)."""
-        return self._written_out(self.system.rhs)
-
-    @cached_property
-    def y(self) -> Matrix:
-        """Outputs conjugate to u, ports by 1, eq. (2)."""
-        return self._written_out(self.system.y)
-
-    @cached_property
-    def y_s(self) -> Matrix:
-        """Entropy-conjugate outputs g^T dS/dx, ports by 1, eq. (5)."""
-        return self._written_out(self.system.y_s)
+    E = _matrix("E", "Co-states dU/dx, n by 1.")
+    J0 = _matrix("J0", "Structure matrix of the energy-preserving elements, n by n, eq. (15).")
+    J_ir = _matrix("J_ir", "Structure matrix J0 + sum_k R_k J_k, n by n, eq. (3).")
+    g = _matrix("g", "Input map, n by ports.")
+    rhs = _matrix("rhs", "Rates dx/dt, n by 1, eq. (1).")
+    y = _matrix("y", "Outputs conjugate to u, ports by 1, eq. (2).")
+    y_s = _matrix("y_s", "Entropy-conjugate outputs g^T dS/dx, ports by 1, eq. (5).")
 
     @cached_property
     def sigma(self) -> sp.Expr:
@@ -186,7 +168,7 @@ class IPHS:
         )
         R, z = system.R[k, 0], system.z[k, 0]
         bracket = self.in_states(system.bracket[k, 0])
-        parts = (self._written_out(system.J(k)), bracket, self.in_states(R), self.in_states(R / z))
+        parts = (self.written_out(system.J(k)), bracket, self.in_states(R), self.in_states(R / z))
         return Process(slot.label, slot.bank, body, *parts)
 
     def in_states(self, expr: sp.Expr) -> sp.Expr:
@@ -203,7 +185,8 @@ class IPHS:
         """
         return (self.laws, self.rates, self.laws, self.shares, self.slopes, self.ratios)
 
-    def _written_out(self, matrix: LaneMatrix) -> Matrix:
+    def written_out(self, matrix: LaneMatrix) -> Matrix:
+        """Return a matrix of `system` as functions of states; explicit if there is no bank."""
         matrix = matrix.map(self.in_states)
         return matrix if banks(self.model) else matrix.explicit({})
 
