@@ -39,11 +39,6 @@ class Letters:
     sees: bool = False
     own: bool = False  # whether its letters are the states that the element lists
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The letters."""
-        return tuple(self.units)
-
     def of(self, element: Any) -> "Letters":
         """Return the letters and units of a law in one element."""
         given = (unit for field, unit in self.instead if getattr(element, field) is not None)
@@ -80,7 +75,7 @@ class LawField:
     @property
     def letters(self) -> tuple[str, ...]:
         """The letters it may use besides parameters."""
-        return self.mark.names
+        return tuple(self.mark.units)
 
     @property
     def tree(self) -> Expr:
