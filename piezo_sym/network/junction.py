@@ -26,8 +26,7 @@ from piezo_sym.network.kirchhoff import Answer, Laws, term_of
 from piezo_sym.network.loops import Definition, Slope, loops_of
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
-from piezo_sym.spec.elements.domains import PowerVariable
-from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, HeatInput, Source
+from piezo_sym.spec.elements.ports import Body, Conductor, Exchange, HeatInput
 
 
 @final
@@ -87,6 +86,8 @@ class _Blocks:
             "R": tuple(Slot(placed.element) for placed, _ in laws.followers),
             "C": tuple(Slot(port.name) for port in laws.ratio for _ in range(2)),
         }
+        # the through variable of an across source is positive where it takes power
+        self.signs = {edge.key: -edge.sign for edge in laws.edges if edge.key[0] == "u"}
         bodies = (n for n, (_, port) in enumerate(laws.states) if isinstance(port, Body))
         self.rows = {laws.states[n][0].element: n for n in bodies}  # each body's entropy
 
@@ -143,15 +144,10 @@ class _Blocks:
         parts: tuple[dict[tuple[int, int], sp.Expr], dict[tuple[int, int], sp.Expr]] = ({}, {})
         for (kind, r), answer in self.answers.items():
             if kind == row:
-                sign = self._supply_sign(r) if row == "u" else 1
+                sign = self.signs.get((kind, r), 1)
                 for part, form in zip(parts, answer, strict=True):
                     part.update(self._entries(r, col, form, sign))
         return LaneMatrix(self.slots[row], self.slots[col], self.lanes, parts[0], parts[1])
-
-    def _supply_sign(self, n: int) -> int:
-        """Return -1 for an across source: the current through it flows out at its first node."""
-        _, port = self.laws.ports[n]
-        return -1 if isinstance(port, Source) and port.imposes is PowerVariable.ACROSS else 1
 
     def _entries(self, row: int, col: str, form: Form, sign: int) -> dict[tuple[int, int], sp.Expr]:
         terms = [(*term_of(label), coefficient) for label, coefficient in form.items()]

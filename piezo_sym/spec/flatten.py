@@ -24,7 +24,7 @@ from piezo_sym.spec.fields import Component, Tables
 from piezo_sym.spec.names import check_name
 from piezo_sym.spec.origins import Origin, Origins, Within
 from piezo_sym.spec.rename import Renaming
-from piezo_sym.spec.tables import bodies, states, temperatures
+from piezo_sym.spec.tables import heat_names, states, temperatures
 
 #: About as many elements as fit into the text of a spec.
 MOST_ELEMENTS = 5_000
@@ -163,10 +163,9 @@ class Part:
         """The new names of the component's symbols, elements and nodes."""
         front, given = f"{self.name}_", self.component.parameters
         symbols = {word: front + word for word in (*self.model.inputs, *states(self.model))}
-        hot = temperatures(self.model) | {f"T_{body}": body for body in bodies(self.model)}
         values = {word: given.get(word) for word in self.model.parameters}
         replaced = {w: v if isinstance(v, str) else front + w for w, v in values.items()}
-        temperature = {word: f"T_{front}{body}" for word, body in hot.items()}
+        temperature = {word: f"T_{front}{body}" for word, body in heat_names(self.model).items()}
         words = {**temperature, **symbols, **self.component.inputs, **replaced}
         return Renaming(words, lambda name: front + name, self.node)
 

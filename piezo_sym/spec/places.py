@@ -15,7 +15,7 @@ from piezo_sym.expressions.units import parse_unit
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
-from piezo_sym.spec.tables import bodies, temperatures
+from piezo_sym.spec.tables import heat_names
 
 
 @final
@@ -55,8 +55,7 @@ def places(spec: Tables) -> Iterator[Place]:
     parameters = {name: p.dimension.dimension for name, p in spec.parameters.items()}
     given = parameters | {name: u.dimension.dimension for name, u in spec.inputs.items()}
     states = state_dimensions(spec)
-    hot = (*temperatures(spec), *(f"T_{body}" for body in bodies(spec)))
-    seen = states | dict.fromkeys(hot, _dimension("K"))
+    seen = states | dict.fromkeys(heat_names(spec), _dimension("K"))
     for name, element in spec.elements.items():
         yield from (_law_place(law, parameters, seen) for law in element.laws(name))
         for port in element.ports(name):

@@ -1,7 +1,8 @@
 """Spec files as text and plain data: found, read, checked for size and nesting.
 
-Input: a path, or the name of a shipped spec.  Output: text, or TOML data.  Nothing here needs the
-spec's types, so that a run can compare a module with its spec at little cost.
+Input: a path, or the name of a shipped spec.  Output: text, or TOML data; where a text is no TOML,
+but of another habit, what to write instead.  Nothing here needs the spec's types, so that a run can
+compare a module with its spec at little cost.
 """
 
 import os
@@ -14,7 +15,6 @@ from typing import Any
 from piezo_sym.errors import FileError, SpecError, UsageError, listing, nearest, quote
 from piezo_sym.files import near_file
 from piezo_sym.spec.names import NAME
-from piezo_sym.spec.syntax import remedy_at
 
 MAX_BYTES = 500_000
 MAX_NESTING = 20
@@ -29,6 +29,34 @@ QUOTED = re.compile(
     re.DOTALL,
 )
 BETWEEN_KEYS = re.compile(r"[=,{}\[\]\n]")
+#: How many characters before and behind the fault are looked at.
+NEAR = 150
+#: Patterns of a line in which ! marks the fault, and what to write there; the first one counts.
+HINTS = tuple(
+    (re.compile(pattern), hint)
+    for pattern, hint in (
+        (r"= *([+-]?\d+)!?,!?(\d+)", r"write \1.\2, with a point"),
+        (r"!(%|//)", "a comment begins with #"),
+        (r"!(True|False)\b", "write true or false"),
+        (r"!['\"]?.*[\u201c\u201d\u201e\u2018\u2019]", 'write straight quotes, as in unit = "N/m"'),
+        (r"[\w.-]*![^\x00-\x7f]", "write a name in Latin letters, as alpha"),
+        (r"!([+-]?)\.(\d+)", r"write \g<1>0.\2, with a digit before the point"),
+        (r"(\d)!\.(?!\d)", r"write a digit behind the point, as in \1.0"),
+        (r"[=,{ ]!(\w+)\s*=", r"separate entries by commas: one is missing before '\1'"),
+        (r"(\d[\d.eE+-]*) !([A-Za-z][\w/*()-]*)", r'write { value = \1, unit = "\2" }'),
+        (r"\d *!([*/^]|\*\*)", "write a value as one number, and a law as a text in quotes"),
+        (r"[=\[,] *!([A-Za-z][^,;}\]#\"']*?) *(?![^,;}\]#\"'])", r'write texts in quotes: "\1"'),
+        (r"!;", "separate entries by commas"),
+        (r"!:", "write = between a key and its value"),
+        (r"\w *!\{", "write = between a key and its value"),
+        (r"=!=", "write one ="),
+        (r"= *\"[^\"]*\"!,", 'write several values as a list: ["a", "b"]'),
+        (r", *!\}", "take out the last comma"),
+        (r"^\[[^\]]*!", "close the name of a table with ], without blanks: [elements.spring]"),
+        (r"\{[^}]*!$", "close the braces on the same line: }"),
+        (r"['\"][^'\"]*!$", "close the quotes on the same line"),
+    )
+)
 MODELS = Path(__file__).parent.parent / "models"
 
 
@@ -130,8 +158,20 @@ def data(text: str) -> dict[str, Any]:
         fault = str(error)
         if twice := _given_twice(text, fault):
             raise SpecError(twice, remedy="rename one of the two, or leave it out") from None
-        remedy = remedy_at(text, fault) or "mend the syntax there"
+        remedy = _remedy_at(text, fault) or "mend the syntax there"
         raise SpecError(f"is not TOML: {fault[:200]}", remedy=remedy) from None
+
+
+def _remedy_at(text: str, fault: str) -> str:
+    """Return what to write at the place that a fault of the TOML parser names, or ''."""
+    place = re.search(r"at line (\d+), column (\d+)", fault)
+    lines = text.split("\n")
+    number, column = (int(place[1]), int(place[2])) if place else (len(lines), len(lines[-1]) + 1)
+    line = lines[min(number, len(lines)) - 1]
+    first = max(0, column - 1 - NEAR)  # of a hostile text, a line may be all of it
+    marked = f"{line[first : column - 1]}!{line[column - 1 : column - 1 + NEAR]}".rstrip()
+    found = ((pattern.search(marked), hint) for pattern, hint in HINTS)
+    return next((match.expand(hint).strip() for match, hint in found if match), "")
 
 
 def _given_twice(text: str, fault: str) -> str:

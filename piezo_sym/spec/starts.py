@@ -5,7 +5,7 @@ rate are left out.  The spec is read only where that may be.
 """
 
 import warnings
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,8 +22,16 @@ def warn_parted(model: "str | Path | Model", module: Any, initial: object) -> No
     units = {record.unit for record in module.STATES if record.name in given}
     if all(r.name in given or r.unit not in units for r in module.STATES):
         return
-    for text in _parted(_groups(model, module.SPEC_SHA256), given):
-        warnings.warn(text, InputWarning, stacklevel=4)
+    for group in _groups(model, module.SPEC_SHA256):
+        first = [state for state in group if state in given]
+        others = [state for state in group if state not in given]
+        if first and others:
+            kept = listing(f"{first[0]} - {state}" for state in others)
+            text = (
+                f"{listing(group)} move at one rate; given only {listing(first)}, they keep "
+                f"{kept} as at the start: give {listing(others)}, too, if all are one quantity"
+            )
+            warnings.warn(text, InputWarning, stacklevel=4)
 
 
 @lru_cache(maxsize=64)
@@ -38,16 +46,3 @@ def _groups(model: "str | Path | Model", _sha256: str) -> tuple[list[str], ...]:
         for state, branch in motions(spec, element).items():
             alike.setdefault(branch, []).append(state)
     return tuple(alike.values())
-
-
-def _parted(groups: Iterable[list[str]], given: Collection[str]) -> Iterator[str]:
-    """Yield what it means that, of states of one rate, some alone are given a start."""
-    for group in groups:
-        first = [state for state in group if state in given]
-        others = [state for state in group if state not in given]
-        if first and others:
-            kept = listing(f"{first[0]} - {state}" for state in others)
-            yield (
-                f"{listing(group)} move at one rate; given only {listing(first)}, they keep "
-                f"{kept} as at the start: give {listing(others)}, too, if all are one quantity"
-            )

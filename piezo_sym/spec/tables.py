@@ -85,6 +85,11 @@ def temperatures(spec: Tables) -> dict[str, str]:
     return {"T": names[0]} if single else {f"T_{name}": name for name in names}
 
 
+def heat_names(spec: Tables) -> dict[str, str]:
+    """Return the body of each name of a temperature: its symbol, and ``T_<element>``."""
+    return {**temperatures(spec), **{f"T_{body}": body for body in bodies(spec)}}
+
+
 def seen(spec: Tables) -> Iterator[str]:
     """Yield the states and temperatures that a law with `Letters.sees` may use.
 

@@ -31,7 +31,7 @@ from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Body, Storage
 from piezo_sym.spec.fields import Tables
-from piezo_sym.spec.tables import bank_of, condition_text, greater, states, temperatures
+from piezo_sym.spec.tables import bank_of, bodies, condition_text, greater, heat_names, states
 
 ALONE = "let it depend on parameters and its own state"
 APART = "write lanes and dissipation apart from the store, which one storage can then replace"
@@ -43,8 +43,7 @@ def check_energies(spec: Tables) -> None:
         if fault := element.form.fault(element):
             field, what, expected, remedy = fault
             raise SpecError(what, f"elements.{name}{field}", expected, remedy)
-    warm = temperatures(spec)
-    hot = {"T": next(iter(warm.values()), ""), **warm, **{f"T_{b}": b for b in warm.values()}}
+    hot = {"T": next(iter(bodies(spec)), ""), **heat_names(spec)}
     owners = states(spec)
     for name, element in spec.elements.items():
         for law in element.laws(name):

@@ -23,6 +23,7 @@ from piezo_sym.spec.tables import (
     bodies,
     condition_text,
     conditions,
+    heat_names,
     initial_laws,
     meanings,
     orders,
@@ -119,8 +120,7 @@ def _check_domain(spec: Tables) -> None:
     domain = conditions(spec)
     for order in orders(spec, domain):
         _check_words(spec, order.tree, f"a knot of a table in {order.where}", (), spec.parameters)
-    hot_names = (*temperatures(spec), *(f"T_{body}" for body in bodies(spec)))
-    words = dict.fromkeys([*spec.parameters, *spec.inputs, *states(spec), *hot_names])
+    words = dict.fromkeys([*spec.parameters, *spec.inputs, *states(spec), *heat_names(spec)])
     lanes = bank_states(spec)
     for condition in domain:
         try:
