@@ -24,7 +24,7 @@ from piezo_sym.spec.fields import Component, Tables
 from piezo_sym.spec.names import check_name
 from piezo_sym.spec.origins import Origin, Origins, Within
 from piezo_sym.spec.rename import Renaming
-from piezo_sym.spec.tables import heat_names, states, temperatures
+from piezo_sym.spec.tables import heat_names, inputs_of, states, temperatures
 
 #: About as many elements as fit into the text of a spec.
 MOST_ELEMENTS = 5_000
@@ -173,11 +173,6 @@ class Part:
         """Return the name in the flat spec of a node of the component."""
         same = node if node in REFERENCES else f"{self.name}.{node}"
         return self.component.nodes.get(node, same)
-
-
-def inputs_of(elements: Iterable[Element]) -> set[str]:
-    """Return the inputs that elements name."""
-    return {given for e in elements for _, given in e.named("input")}
 
 
 def cells(spec: Tables, outside: set[str]) -> Iterator[Row]:

@@ -12,7 +12,6 @@ from piezo_sym.expressions.dimensions import Dimension, Match, matches
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.tree import Cmp, Expr, Node, Sym
 from piezo_sym.expressions.units import parse_unit
-from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.elements.ports import Exchange, HeatInput, Source
 from piezo_sym.spec.fields import Tables
 from piezo_sym.spec.tables import heat_names
@@ -57,7 +56,10 @@ def places(spec: Tables) -> Iterator[Place]:
     states = state_dimensions(spec)
     seen = states | dict.fromkeys(heat_names(spec), _dimension("K"))
     for name, element in spec.elements.items():
-        yield from (_law_place(law, parameters, seen) for law in element.laws(name))
+        for law in element.laws(name):
+            letters = {letter: _dimension(unit) for letter, unit in law.mark.units.items()}
+            fixed, unit = {**(seen if law.mark.sees else {}), **letters}, law.mark.unit
+            yield Place(law.where, name, law.tree, parameters, fixed, _dimension(unit), unit)
         for port in element.ports(name):
             if isinstance(port, Source | Exchange | HeatInput):
                 unit, place = port.input_unit, f"elements.{name}.input"
@@ -70,14 +72,6 @@ def places(spec: Tables) -> Iterator[Place]:
             if isinstance(part, str):
                 tree: Expr = parse_law(part, where := f"initial.{symbol}")
                 yield Place(where, "", tree, given, {}, states[symbol])
-
-
-def _law_place(
-    law: LawField, given: Mapping[str, Dimension], seen: Mapping[str, Dimension]
-) -> Place:
-    letters = {letter: _dimension(unit) for letter, unit in law.mark.units.items()}
-    fixed, unit = {**(seen if law.mark.sees else {}), **letters}, law.mark.unit
-    return Place(law.where, law.element, law.tree, given, fixed, _dimension(unit), unit)
 
 
 def state_dimensions(spec: Tables) -> dict[str, Dimension]:

@@ -107,7 +107,7 @@ def all_faults() -> Iterator[Callable[[], AbstractContextManager[None]]]:
 
 def _left(detail: ErrorDetails, spec: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the known keys of the table with an unknown key, without those an element has."""
-    known = _known([str(part) for part in detail["loc"]])
+    _, known = _place(detail)
     if "elements" not in detail["loc"][:-1]:
         return known
     table: Any = spec
@@ -128,7 +128,7 @@ def _unknown_key(detail: ErrorDetails, known: Iterable[str]) -> SpecError:
     remedy = nearest(key, known)
     if key in NODES and meant in NODES:
         remedy = f"did you mean '{meant}'? {NODES[meant]}"
-    return SpecError(f"unknown key {quote(key)}", _where(detail), remedy=remedy)
+    return SpecError(f"unknown key {quote(key)}", _place(detail)[0], remedy=remedy)
 
 
 def meant_kind(kind: str) -> str:
@@ -137,18 +137,21 @@ def meant_kind(kind: str) -> str:
     return next((say for say, words in MEANT.items() if word in words), nearest(kind, KINDS))
 
 
-def _where(detail: ErrorDetails) -> str:
-    """Return the dotted path of what a detail is about."""
+def _place(detail: ErrorDetails) -> tuple[str, tuple[str, ...]]:
+    """Return the dotted path of what a detail is about, and the keys of the table it stands in."""
     place = [str(part) for part in detail["loc"]]
+    table: Any = Tables
     if "elements" in place[:3:2] and len(place) > (at := place.index("elements") + 2):
-        del place[at]  # pydantic names the kind here
-    return ".".join(place) or "spec"
+        table = KINDS.get(place.pop(at))  # pydantic names the kind here
+    elif len(place) > 1:
+        field = Tables.model_fields.get(place[0])
+        table = field and next(iter(get_args(field.annotation)), field.annotation)
+    return ".".join(place) or "spec", tuple(getattr(table, "model_fields", ()))
 
 
 def _problem(detail: ErrorDetails, spec: Mapping[str, Any]) -> SpecError:
-    place = [str(part) for part in detail["loc"]]
-    known, where = _known(place), _where(detail)
-    value = detail.get("input")
+    place, value = [str(part) for part in detail["loc"]], detail.get("input")
+    where, known = _place(detail)
     match detail["type"]:
         case "missing" if isinstance(detail["loc"][-1], int):
             entries = "1 entry is given" if len(value) == 1 else "no entry is given"
@@ -168,7 +171,8 @@ def _problem(detail: ErrorDetails, spec: Mapping[str, Any]) -> SpecError:
             return SpecError("its fields do not go together", where, _expected(detail))
         case "model_type" | "dict_type" if (table := place[len(place) > 2 and -1]) in ENTRIES:
             name = value[0] if isinstance(value, list) and value else "spring"
-            expected = ENTRIES[table].format(value=_number(value), where=where, name=name)
+            number = value if isinstance(value, int | float) else "1.0"
+            expected = ENTRIES[table].format(value=number, where=where, name=name)
             return SpecError(f"{quote(value)} does not fit", where, expected)
         case "value_error" if isinstance(value, str) and NUMBER.fullmatch(value):
             remedy = f"write {value.replace(',', '.').strip()}, with a point and without quotes"
@@ -192,10 +196,6 @@ def _heats(spec: Mapping[str, Any]) -> str:
     return f'heats = "{hot[0]}", {f"or another {BODY}" if hot[1:] else f"the {BODY}"}'
 
 
-def _number(value: object) -> str:
-    return str(value) if isinstance(value, int | float) else "1.0"
-
-
 def _expected(detail: ErrorDetails) -> str:
     if detail["type"] == "tuple_type" and detail["loc"][-1] == "assume":
         given = detail["input"]
@@ -214,14 +214,3 @@ def _expected(detail: ErrorDetails) -> str:
         return str(detail.get("ctx", {}).get("error", detail["msg"]))
     message = detail["msg"].removeprefix("Input should be ")
     return message[:1].lower() + message[1:]
-
-
-def _known(place: list[str]) -> tuple[str, ...]:
-    """Return the keys of the table in which `place` stands."""
-    kind: Any = Tables
-    if "elements" in place[:3:2] and len(place) > (at := place.index("elements") + 2):
-        kind = KINDS.get(place[at])
-    elif len(place) > 1:
-        table = Tables.model_fields.get(place[0])
-        kind = table and next(iter(get_args(table.annotation)), table.annotation)
-    return tuple(getattr(kind, "model_fields", ()))

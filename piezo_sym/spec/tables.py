@@ -14,7 +14,7 @@ from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.parse import parse_condition, parse_law
 from piezo_sym.expressions.text import SPEC, write_comparison
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Node, Num, names, rename, walk
-from piezo_sym.spec.elements.base import state_symbol
+from piezo_sym.spec.elements.base import Element, state_symbol
 from piezo_sym.spec.elements.marks import LawField
 from piezo_sym.spec.fields import Tables
 
@@ -166,9 +166,14 @@ def orders(spec: Tables, domain: Iterable[Condition]) -> Iterator[Condition]:
     yield from dict.fromkeys(tests)
 
 
+def inputs_of(elements: Iterable[Element]) -> set[str]:
+    """Return the inputs that elements name."""
+    return {given for e in elements for _, given in e.named("input")}
+
+
 def unused_inputs(spec: Tables) -> list[str]:
     """Return the inputs that no element names, and no initial value uses."""
-    used = {given for e in spec.elements.values() for _, given in e.named("input")}
+    used = inputs_of(spec.elements.values())
     used |= {word for _, tree in initial_laws(spec) for word in names(tree)}
     return [name for name in spec.inputs if name not in used]
 

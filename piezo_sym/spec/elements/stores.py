@@ -8,6 +8,7 @@ exceed it.  As a law of effort and rate, this is the rate projected on |effort| 
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any, final
 
 from piezo_sym.expressions.calculus import add, div, inserted, mul, neg
@@ -72,9 +73,6 @@ def store(size: Size) -> Form:
         slips = getattr(element, "slip", None) is not None
         return _with_slip(size, element, port, name) if slips else (port,)
 
-    def requires(element: Any, name: str) -> tuple[Cmp, ...]:
-        return _positive_size(size, element, state_symbol(element, name))
-
     return Form(
         fields=_fields(size),
         doc=_store_doc(size),
@@ -83,10 +81,10 @@ def store(size: Size) -> Form:
         one_of=one_of,
         letter=letter,
         unit=lambda _: out.state_unit,
-        fault=lambda element: _fault(size, element),
-        requires=requires,
+        fault=partial(_fault, size),
+        requires=partial(_positive_size, size),
         has_lanes=True,
-        joins=lambda element: _joins(size, element),
+        joins=partial(_joins, size),
     )
 
 
@@ -191,7 +189,7 @@ def _continued(size: Size, element: Any, state: str) -> Expr:
     return without_common_factors(_costate(size, element, state), state, _rest(size, element))
 
 
-def _positive_size(size: Size, element: Any, state: str) -> tuple[Cmp, ...]:
+def _positive_size(size: Size, element: Any, name: str) -> tuple[Cmp, ...]:
     """Return the conditions that the size is positive, or >= 0 if it is 0/0 at rest, as sinh(q)/q.
 
     In that case its sign is that of state times co-state, which has a value at rest, too; its limit
@@ -199,7 +197,8 @@ def _positive_size(size: Size, element: Any, state: str) -> tuple[Cmp, ...]:
     """
     if getattr(element, size.field) is None:
         return ()
-    law, rest = _continued(size, element, state), _rest(size, element)
+    state, rest = state_symbol(element, name), _rest(size, element)
+    law = _continued(size, element, state)
     if law == _costate(size, element, state):
         return (positive(rename(element.law(size.field), {size.out.state_letter: state})),)
     limit = slope_at(law, state, rest)
