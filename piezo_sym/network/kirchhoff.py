@@ -55,8 +55,8 @@ Imposing = Storage | DissipativePort | Source | Body
 class Edge:
     """A branch in the junction laws.
 
-    `key` is the given that it imposes, such as ``("E", 2)`` ("R": the rate of a follower); it names
-    the unknown of the branch, too.
+    `key` is the given that it imposes, such as ``("E", 2)`` ("R": the rate of a follower); the
+    through variable, where it is unknown, has the label ``("t", key)``.
     """
 
     placed: Placed
@@ -65,11 +65,6 @@ class Edge:
     imposes: PowerVariable
     key: tuple[str, int]
     sign: int
-
-    @property
-    def unknown(self) -> tuple[str, Any]:
-        """The label of the through variable, where it is unknown."""
-        return ("t", self.key)
 
 
 def term_of(label: Any) -> tuple[str, Any]:
@@ -147,7 +142,7 @@ class Laws:
         rows: dict[str, Equation] = {}
         for edge in self.edges:
             if edge.placed.bank == bank:
-                through = Equation({edge.unknown: self.field.one})
+                through = Equation({("t", edge.key): self.field.one})
                 if edge.imposes is PowerVariable.THROUGH:
                     through = Equation({}, {edge.key: edge.sign * self.field.one})
                 _book(rows, edge.branch, through, self.field.one)
@@ -178,7 +173,7 @@ class Laws:
     def _flows(self, bank: str | None) -> list[tuple[str, Any]]:
         """Return the unknown through variables of a bank's branches; None: of those in no bank."""
         own = (e for e in self.edges if e.placed.bank == bank)
-        return [e.unknown for e in own if e.imposes is PowerVariable.ACROSS]
+        return [("t", e.key) for e in own if e.imposes is PowerVariable.ACROSS]
 
     def _solve_lane(self, bank: str) -> dict[Any, Form]:
         """Return one lane's own unknowns in terms of its givens and the shared nodes."""
@@ -239,7 +234,8 @@ class Laws:
     def _answer(self, edge: Edge, lanes: Mapping[str, Any], shared: dict[Any, Form]) -> Answer:
         """Return a branch's answer, the variable that it does not impose."""
         across = edge.imposes is PowerVariable.THROUGH
-        asked = _across(edge.branch, self.field.one) if across else {edge.unknown: self.field.one}
+        one = self.field.one
+        asked = _across(edge.branch, one) if across else {("t", edge.key): one}
         return self._solution(asked, lanes.get(edge.placed.bank or "", {}), shared)
 
     def _solution(self, asked: Form, own: dict[Any, Form], shared: dict[Any, Form]) -> Answer:

@@ -15,7 +15,7 @@ from functools import cached_property, partial
 from typing import Any, final
 
 from piezo_sym.errors import SpecError, quote
-from piezo_sym.expressions.parse import parse_condition, parse_law
+from piezo_sym.expressions.parse import parse_condition
 from piezo_sym.expressions.tree import names
 from piezo_sym.spec.checks.components import check_component
 from piezo_sym.spec.elements.base import Element
@@ -24,7 +24,7 @@ from piezo_sym.spec.fields import Component, Tables
 from piezo_sym.spec.names import check_name
 from piezo_sym.spec.origins import Origin, Origins, Within
 from piezo_sym.spec.rename import Renaming
-from piezo_sym.spec.tables import heat_names, inputs_of, states, temperatures
+from piezo_sym.spec.tables import heat_names, inputs_of, starts, states, temperatures
 
 #: About as many elements as fit into the text of a spec.
 MOST_ELEMENTS = 5_000
@@ -151,10 +151,8 @@ class Part:
         """The states, temperatures and inputs that go with the elements left out."""
         symbols, hot = states(self.model), temperatures(self.model)
         gone = {word for word, name in (*symbols.items(), *hot.items()) if name not in self.kept}
-        starts = (start for name, start in self.model.initial.items() if name not in gone)
-        parts = (p for start in starts for p in (start if isinstance(start, tuple) else (start,)))
-        texts = (part for part in parts if isinstance(part, str))
-        used = {word for text in texts for word in names(parse_law(text, "initial"))}
+        kept = (law for s in self.model.initial if s not in gone for law in starts(self.model, s))
+        used = {word for law in kept for word in names(law)}
         used |= inputs_of(self.kept.values())
         return frozenset(gone | (inputs_of(self.model.elements.values()) - used))
 

@@ -85,19 +85,16 @@ class Model(Tables):
             If they do not fit together; the message names things as they were written.
         """
         if (self.components or self.banks) and self._flat is None:
-            self._flat = self._flattened()
+            models = (cast(Model, c.spec.model).flatten() for c in self.components.values())
+            flat = flattened(self, models)
+            try:
+                made = Model(**flat.tables)
+            except PiezoError as error:
+                flat.origins.put_in(error)
+                raise
+            made._origins = flat.origins
+            self._flat = made
         return self._flat or self
-
-    def _flattened(self) -> Model:
-        models = (cast(Model, c.spec.model).flatten() for c in self.components.values())
-        flat = flattened(self, models)
-        try:
-            made = Model(**flat.tables)
-        except PiezoError as error:
-            flat.origins.put_in(error)
-            raise
-        made._origins = flat.origins
-        return made
 
     @property
     def name(self) -> str:
