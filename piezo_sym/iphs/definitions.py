@@ -86,7 +86,7 @@ def _input(port: Driven, circuit: Circuit, symbols: SymbolTable) -> sp.Expr:
     """Return a port's entry of the input vector u: its input, P/T or lam*(T_e/T - 1)."""
     if isinstance(port, Source):
         return symbols[port.input]
-    temperature = symbols[circuit.body(port.body).temperature]
+    temperature = symbols[circuit.bodies[port.body].temperature]
     ratio = symbols[port.input] / temperature
     if isinstance(port, HeatInput):
         return ratio
@@ -190,7 +190,7 @@ def laws_of(circuit: Circuit, symbols: SymbolTable, system: System) -> Definitio
             letters = {port.letter: z, port.rate_letter: symbols.symbols.get(port.rate, z)}
             yield symbols[port.output], symbols.law(port.law, letters)
         else:
-            first = symbols[circuit.body(port.first).temperature]
+            first = symbols[circuit.bodies[port.first].temperature]
             yield symbols[port.output], symbols.law(port.conductance, {}) * z / first
 
 

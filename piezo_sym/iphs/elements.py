@@ -166,8 +166,8 @@ class _Elements:
                 yield from self._branch(port.domain, port.imposes, given, other, power=heat.value)
                 yield heat
             case Conductor() as port:
-                bodies = map(self.iphs.circuit.body, (port.first, port.second))
-                hot, cold = (Sym(body.temperature) for body in bodies)
+                bodies = self.iphs.circuit.bodies
+                hot, cold = (Sym(bodies[end].temperature) for end in (port.first, port.second))
                 yield ElementRow("effort", "K", "temperature difference over", add(hot, neg(cold)))
                 doc = "heat from first to second body by"
                 yield ElementRow("power", "W", doc, _symbol("heat", n))

@@ -148,7 +148,7 @@ def environment(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
 def _exchanges(iphs: IPHS) -> Iterator[tuple[sp.Expr, sp.Symbol, sp.Symbol]]:
     """Yield (lam, T, T_e) of each heat exchange."""
     for _, port in iphs.circuit.of(Exchange):
-        temperature = iphs.circuit.body(port.body).temperature
+        temperature = iphs.circuit.bodies[port.body].temperature
         conductance = iphs.symbols.law(port.conductance, {})
         yield conductance, iphs.symbols[temperature], iphs.symbols[port.input]
 

@@ -76,7 +76,7 @@ def invariant(iphs: IPHS, assumptions: Assumptions) -> Iterator[Obligation]:
         if floor is None or not exchanges or worked or heated or pumped:
             continue
         contacts = tuple(
-            (contact.conductance, Sym(iphs.circuit.body(other).temperature))
+            (contact.conductance, Sym(iphs.circuit.bodies[other].temperature))
             for _, contact in iphs.circuit.of(Conductor)
             for one, other in permutations((contact.first, contact.second))
             if one == placed.element

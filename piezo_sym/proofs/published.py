@@ -86,7 +86,7 @@ def _names(iphs: IPHS, tree: _Trees) -> Iterator[tuple[str, dict[str, str | None
         yield entry(share.name, "", "share", tree(value))
     for (placed, process), z in zip(processes, iphs.system.z, strict=True):
         if isinstance(process, Conductor):
-            first = Sym(circuit.body(process.first).temperature)
+            first = Sym(circuit.bodies[process.first].temperature)
             law = div(mul(process.conductance, tree(z)), first)
         else:
             letters = {process.letter: tree(z), process.rate_letter: Sym(process.rate)}

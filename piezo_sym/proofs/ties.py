@@ -76,7 +76,7 @@ def _bounded(iphs: IPHS) -> Iterator[sp.Symbol]:
         if source.input in used:
             yield iphs.symbols[source.input]
     for element in iphs.circuit.pumped:
-        yield iphs.symbols[iphs.circuit.body(element).temperature]
+        yield iphs.symbols[iphs.circuit.bodies[element].temperature]
 
 
 def _symbols(iphs: IPHS, drive: sp.Expr) -> set[sp.Symbol]:

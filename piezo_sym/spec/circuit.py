@@ -90,10 +90,6 @@ class Circuit:
             found.setdefault(placed.element, []).append(placed.port)
         return {element: tuple(ports) for element, ports in found.items()}
 
-    def body(self, element: str) -> Body:
-        """Return the body of a thermal mass."""
-        return self.bodies[element]
-
     @cached_property
     def conditions(self) -> tuple[Condition, ...]:
         """The domain."""

@@ -157,7 +157,7 @@ an exchange is of the inverse temperatures
   + ratio = temperature / symbols[port.input]
   = two airs
 an exchange has another body's temperature
-  - temperature = symbols[circuit.body(port.body).temperature]
+  - temperature = symbols[circuit.bodies[port.body].temperature]
   -     ratio
   + temperature = symbols[next(iter(circuit.of(Body)))[1].temperature]
   +     ratio

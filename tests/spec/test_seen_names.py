@@ -71,7 +71,7 @@ def test_t_is_a_parameter_where_the_spec_says_so():
         ('"T > T_0"', '"T_body > T_0", "T > 0"'),
     ]
     iphs = derive(edited(parameter("T", "s"), *plain))
-    assert str(iphs.circuit.body("body").temperature) == "T_body"
+    assert str(iphs.circuit.bodies["body"].temperature) == "T_body"
     assert {row.verdict.value for row in decide(iphs).rows} == {"PROVED"}
 
 

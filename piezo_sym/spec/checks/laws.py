@@ -66,17 +66,15 @@ def _unknown_reference(
         return SpecError(what, where, remedy=remedy)
     if known:
         return SpecError(what, where, remedy=nearest(given, known))
-    if to == "thermal_mass":
-        free = NAME.fullmatch(given) and given not in spec.elements
-        others = ("body", *(f"body_{n}" for n in range(2, len(spec.elements) + 2)))
-        name = given if free else next(other for other in others if other not in spec.elements)
-        body = f'{name} = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c_0)" }}'
-        remedy = f"add one to [elements]: {body}"
-        new = [f"{word} = {entry}" for word, entry in WARM.items() if word not in spec.parameters]
-        remedy += f"; and to [parameters]: {' and '.join(new)}" * bool(new)
-        remedy += "" if free else f", and name {quote(name)} here instead of {quote(given)}"
-        return SpecError(what, where, "a body for the heat", remedy)
-    return SpecError(what, where)
+    free = NAME.fullmatch(given) and given not in spec.elements
+    others = ("body", *(f"body_{n}" for n in range(2, len(spec.elements) + 2)))
+    name = given if free else next(other for other in others if other not in spec.elements)
+    body = f'{name} = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c_0)" }}'
+    remedy = f"add one to [elements]: {body}"
+    new = [f"{word} = {entry}" for word, entry in WARM.items() if word not in spec.parameters]
+    remedy += f"; and to [parameters]: {' and '.join(new)}" * bool(new)
+    remedy += "" if free else f", and name {quote(name)} here instead of {quote(given)}"
+    return SpecError(what, where, "a body for the heat", remedy)
 
 
 #: The parameters of a body's usual law.
