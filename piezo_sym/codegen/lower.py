@@ -80,5 +80,5 @@ def _printed(value: float | tuple[float, ...]) -> str | tuple[str, ...]:
 
 def _output(placed: Placed, port: Driven) -> Described:
     if isinstance(port, Source):
-        return Described(placed.element, port.units[1], port.doc)
+        return Described(placed.element, port.output_unit, port.doc)
     return Described(placed.element, "K", f"temperature of thermal_mass '{port.body}'")

@@ -11,6 +11,7 @@ from piezo_sym.errors import NetworkError, listing, nearest, quote, with_article
 from piezo_sym.spec.circuit import LAST, Circuit, lane_ends
 from piezo_sym.spec.elements.domains import REFERENCES, PhysicalDomain
 from piezo_sym.spec.elements.ports import Body, Branch, Coupling, DissipativePort, Source, Storage
+from piezo_sym.spec.tables import alone
 
 K = TypeVar("K", bound=Hashable)
 
@@ -53,15 +54,10 @@ def is_inner(node: str) -> bool:
 
 def inner_nodes(circuit: Circuit) -> frozenset[str]:
     """Return the nodes that each lane of a bank has for itself: no branch outside is connected."""
-    owners = {placed.element: placed.bank for placed in circuit.ports}
-    users: dict[str, set[str | None]] = {}
-    for element, branch, _ in branches(circuit):
-        for node in branch:
-            users.setdefault(node, set()).add(owners[element])
-    for node in (node for pair in circuit.chains.values() for node in pair):
-        users.setdefault(node, set()).add(None)
-    own = (node for node, banks in users.items() if len(banks) == 1 and None not in banks)
-    return frozenset(node for node in own if not is_reference(node))
+    banks = {placed.element: placed.bank for placed in circuit.ports}
+    users = [(node, banks[element]) for element, pair, _ in branches(circuit) for node in pair]
+    users += [(node, None) for ends in circuit.chains.values() for node in ends]
+    return frozenset(node for node in alone(users) if not is_reference(node))
 
 
 def check_nodes(circuit: Circuit) -> None:

@@ -75,6 +75,15 @@ def banks(spec: Tables) -> dict[str, int]:
     return {bank: spec.elements[name].count for name, bank in bank_of(spec).items()}
 
 
+def alone(users: Iterable[tuple[str, str | None]]) -> dict[str, str]:
+    """Return the names that one bank alone uses, with that bank; `users` are names and banks."""
+    found: dict[str, set[str | None]] = {}
+    for name, bank in users:
+        found.setdefault(name, set()).add(bank)
+    single = {name: banks.pop() for name, banks in found.items() if len(banks) == 1}
+    return {name: bank for name, bank in single.items() if bank is not None}
+
+
 def temperatures(spec: Tables) -> dict[str, str]:
     """Return the body of each temperature symbol.
 
@@ -212,16 +221,12 @@ def lane_parameters(spec: Tables, domain: Iterable[Condition]) -> dict[str, str]
 
     `domain` is the spec's own, from `conditions`.
     """
-    users: dict[str, set[str | None]] = {}
     owners, lanes = bank_of(spec), bank_states(spec)
-    for law in laws(spec):
-        for word in set(names(law.tree)) - set(law.letters):
-            users.setdefault(word, set()).add(owners.get(law.element))
+    words = [({*names(w.tree)} - {*w.letters}, owners.get(w.element)) for w in laws(spec)]
     for where, tree in initial_laws(spec):
-        for word in names(tree):
-            users.setdefault(word, set()).add(lanes.get(where.removeprefix("initial.")))
-    single = {word: next(iter(owner)) for word, owner in users.items() if len(owner) == 1}
-    candidates = {word: bank for word in spec.parameters if (bank := single.get(word))}
+        words.append(({*names(tree)}, lanes.get(where.removeprefix("initial."))))
+    single = alone((word, bank) for used, bank in words for word in used)
+    candidates = {word: single[word] for word in spec.parameters if word in single}
     lanes |= candidates
     groups = [names(condition.tree) for condition in domain]
     mixed = {n for g in groups if len({lanes[n] for n in g if n in lanes}) > 1 for n in g}

@@ -14,7 +14,14 @@ from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.elements.ports import Branch
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.rename import Renaming
-from piezo_sym.spec.tables import bank_of, bank_states, banks, conditions, lane_parameters
+from piezo_sym.spec.tables import (
+    alone,
+    bank_of,
+    bank_states,
+    banks,
+    conditions,
+    lane_parameters,
+)
 
 
 def unroll(model: Model, counts: Mapping[str, int]) -> Model:
@@ -112,9 +119,5 @@ def _chain_nodes(chain: Branch | None, bank: str, lane: int, size: int) -> dict[
 
 def _cell_nodes(model: Model) -> set[str]:
     """Return the nodes that elements of one bank alone name."""
-    users: dict[str, set[str | None]] = {}
-    for name, element in model.elements.items():
-        for _, node in element.named("node"):
-            users.setdefault(node, set()).add(element.bank_of(name))
-    single = {n for n, banks in users.items() if len(banks) == 1 and None not in banks}
-    return single - {*REFERENCES}
+    named = ((e.bank_of(name), e.named("node")) for name, e in model.elements.items())
+    return alone((node, bank) for bank, nodes in named for _, node in nodes).keys() - REFERENCES

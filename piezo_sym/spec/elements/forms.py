@@ -82,7 +82,7 @@ def imposed(domain: PhysicalDomain, imposes: PowerVariable, symbol: str) -> Form
     def ports(element: Any, name: str, branch: Branch) -> tuple[Port, ...]:
         pair = placed(element, branch, domain)
         doc = f"{output.word} {'given by' if across else 'at'} {element.kind} '{name}'"
-        return (Source(element.input, pair, domain, imposes, (given.unit, output.unit), doc),)
+        return (Source(element.input, pair, domain, imposes, given.unit, output.unit, doc),)
 
     return Form(
         fields={**places(domain, at), "input": (InputName, ..., symbol)},

@@ -88,13 +88,9 @@ class Source:
     branch: Branch
     domain: PhysicalDomain
     imposes: PowerVariable
-    units: tuple[str, str]
+    input_unit: str
+    output_unit: str
     doc: str
-
-    @property
-    def input_unit(self) -> str:
-        """The unit of its input."""
-        return self.units[0]
 
 
 @final
