@@ -23,7 +23,7 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tidying import collected
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, If, Sym, names, rebuild, walk
 from piezo_sym.iphs.system import System
-from piezo_sym.network import Driven, Junction, Slope, port_order
+from piezo_sym.network import Driven, Junction, port_order
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PowerVariable
@@ -244,12 +244,6 @@ def ratios_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
         yield symbols[port.name], symbols.law(port.ratio, {})
 
 
-def slopes_of(symbols: SymbolTable, slopes: tuple[Slope, ...]) -> Definitions:
-    """Yield the slope of each law in a resistive loop, a function of temperatures and states."""
-    for slope in slopes:
-        yield slope.symbol, symbols.law(slope.law, {})
-
-
 def starts_of(junction: Junction) -> Iterator[tuple[Expr, ...]]:
     """Yield the initial value of each state, one per lane of a bank; Z^T x for joined stores."""
     model = junction.circuit.model
@@ -257,9 +251,3 @@ def starts_of(junction: Junction) -> Iterator[tuple[Expr, ...]]:
     for state in (slot.label for slot in junction.states):
         joint = joints.get(state)
         yield (joint.start(model, state),) if joint else starts(model, state)
-
-
-def costates_of(circuit: Circuit, symbols: SymbolTable) -> Definitions:
-    """Yield each co-state with its law in the state."""
-    for _, port in circuit.of(Storage, Body):
-        yield symbols[costate_name(port)], symbols.law(port.law, {})

@@ -22,12 +22,11 @@ from piezo_sym.expressions.tree import Expr
 from piezo_sym.iphs.definitions import (
     Energy,
     check_stops,
-    costates_of,
+    costate_name,
     energies_of,
     laws_of,
     rates_of,
     ratios_of,
-    slopes_of,
     starts_of,
     system_of,
 )
@@ -35,7 +34,7 @@ from piezo_sym.iphs.reading import Pairs, Reading, document, equations_latex
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Junction, junction_of
 from piezo_sym.spec.circuit import Circuit, circuit_of
-from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort
+from piezo_sym.spec.elements.ports import Body, Conductor, DissipativePort, Storage
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.tables import banks
 from piezo_sym.spec.unroll import unroll
@@ -259,7 +258,10 @@ def iphs_of(symbols: SymbolTable, junction: Junction) -> IPHS:
         laws=laws,
         rates=rates,
         shares=junction.shares,
-        slopes=tuple(slopes_of(symbols, junction.slopes)),
+        slopes=tuple((slope.symbol, symbols.law(slope.law, {})) for slope in junction.slopes),
         ratios=tuple(ratios_of(circuit, symbols)),
-        costates=tuple(costates_of(circuit, symbols)),
+        costates=tuple(
+            (symbols[costate_name(port)], symbols.law(port.law, {}))
+            for _, port in circuit.of(Storage, Body)
+        ),
     )

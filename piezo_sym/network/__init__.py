@@ -3,6 +3,5 @@
 from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.junction import Junction, junction_of
 from piezo_sym.network.kirchhoff import Driven, port_order
-from piezo_sym.network.loops import Slope
 
-__all__ = ["Driven", "Junction", "Slope", "junction_of", "port_order", "slope_of"]
+__all__ = ["Driven", "Junction", "junction_of", "port_order", "slope_of"]

@@ -189,14 +189,6 @@ ratios have twice the temperature
   +         twice = {name: 2 * symbols[name] for name in heat}
   +         yield symbols[port.name], symbols.law(port.ratio, twice)
   = transducer_between_moving_nodes
-slopes are those of one law
-  - yield slope.symbol, symbols.law(slope.law, {})
-  + yield slope.symbol, symbols.law(slopes[0].law, {})
-  = coil loop
-co-states are of minus their state
-  - symbols[costate_name(port)], symbols.law(port.law, {})
-  + symbols[costate_name(port)], symbols.law(port.law, {port.state: -symbols[port.state]})
-  = current
 co-states are merged
   - costates = {n: symbols[costate_name(port)] for n, (_, port) in enumerate(stores)}
   + costates = {n: symbols[costate_name(stores[n * (n != 1)][1])] for n, _ in enumerate(stores)}
@@ -277,6 +269,14 @@ each process heats the next state
   + entries = {(k, self.heats[k] - 1): r for k, r in enumerate(self.R) if r != 0}
   = two_sources_on_one_input
 ## iphs/iphs
+slopes are those of one law
+  - (slope.symbol, symbols.law(slope.law, {}))
+  + (slope.symbol, symbols.law(junction.slopes[0].law, {}))
+  = coil loop
+co-states are of minus their state
+  - symbols[costate_name(port)], symbols.law(port.law, {})
+  + symbols[costate_name(port)], symbols.law(port.law, {port.state: -symbols[port.state]})
+  = current
 energies are another state's
   - energies=energies_of(circuit),
   + energies=energies_of(circuit)[:1] * len(system.states),
