@@ -22,7 +22,7 @@ from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
 from piezo_sym.network.causality import causal_laws
 from piezo_sym.network.joints import Joint, join_stores
-from piezo_sym.network.kirchhoff import Answer, Laws, term_of
+from piezo_sym.network.kirchhoff import Laws, term_of
 from piezo_sym.network.loops import Definition, Slope, loops_of
 from piezo_sym.network.nodes import check_nodes
 from piezo_sym.spec.circuit import Circuit
@@ -78,7 +78,6 @@ class _Blocks:
 
     def __init__(self, laws: Laws, lanes: Lanes) -> None:
         self.laws, self.lanes = laws, lanes
-        self.answers: Mapping[tuple[str, int], Answer] = laws.answers
         self.slots = {
             "E": tuple(Slot(port.state, placed.bank) for placed, port in laws.states),
             "W": tuple(Slot(placed.element, placed.bank) for placed, _ in laws.processes),
@@ -142,7 +141,7 @@ class _Blocks:
         Rows "u" are outputs y, signed so that y*u is the power put in.
         """
         parts: tuple[dict[tuple[int, int], sp.Expr], dict[tuple[int, int], sp.Expr]] = ({}, {})
-        for (kind, r), answer in self.answers.items():
+        for (kind, r), answer in self.laws.answers.items():
             if kind == row:
                 sign = self.signs.get((kind, r), 1)
                 for part, form in zip(parts, answer, strict=True):

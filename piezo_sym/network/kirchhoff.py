@@ -6,7 +6,7 @@ or through, each of its branches imposes.  A bank is one representative lane, wh
 eliminated first.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, final
@@ -14,14 +14,7 @@ from typing import Any, final
 import sympy as sp
 from sympy.polys.domains import QQ
 
-from piezo_sym.algebra.linear import (
-    Equation,
-    Form,
-    LongError,
-    accumulate,
-    combine,
-    solve,
-)
+from piezo_sym.algebra.linear import Equation, Form, LongError, accumulate, combine, solve
 from piezo_sym.algebra.symbols import SymbolTable
 from piezo_sym.errors import NetworkError
 from piezo_sym.network.nodes import inner_nodes, is_reference
@@ -125,9 +118,12 @@ class Laws:
         """
         lanes = {bank: self._solve_lane(bank) for bank in self.banks}
         shared = self._solve_shared(lanes)
-        found = {edge.key: self._answer(edge, lanes, shared) for edge in self.edges}
+        found, one = dict[tuple[str, int], Answer](), self.field.one
+        for edge in self.edges:
+            across = edge.imposes is PowerVariable.THROUGH
+            asked = _across(edge.branch, one) if across else {("t", edge.key): one}
+            found[edge.key] = self._solution(asked, lanes.get(edge.placed.bank or "", {}), shared)
         for n, port in enumerate(self.ratio):
-            one = self.field.one
             first = _across(port.first, one) if port.gyrates else {("t", port.name): one}
             found["C", 2 * n] = self._solution(first, {}, shared)
             found["C", 2 * n + 1] = self._solution(_across(port.second, one), {}, shared)
@@ -230,13 +226,6 @@ class Laws:
             remedy = "put an inductor or a hysteron in each lane, so that its current is a state"
             raise NetworkError(what, f"elements.{bank}", remedy=remedy)
         return {("sum", label): coefficient for label, coefficient in drawn.items()}
-
-    def _answer(self, edge: Edge, lanes: Mapping[str, Any], shared: dict[Any, Form]) -> Answer:
-        """Return a branch's answer, the variable that it does not impose."""
-        across = edge.imposes is PowerVariable.THROUGH
-        one = self.field.one
-        asked = _across(edge.branch, one) if across else {("t", edge.key): one}
-        return self._solution(asked, lanes.get(edge.placed.bank or "", {}), shared)
 
     def _solution(self, asked: Form, own: dict[Any, Form], shared: dict[Any, Form]) -> Answer:
         """Return a combination of unknowns in terms of givens, as (every lane, own lane)."""

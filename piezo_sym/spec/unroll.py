@@ -14,14 +14,7 @@ from piezo_sym.spec.elements.domains import REFERENCES
 from piezo_sym.spec.elements.ports import Branch
 from piezo_sym.spec.model import Model
 from piezo_sym.spec.rename import Renaming
-from piezo_sym.spec.tables import (
-    alone,
-    bank_of,
-    bank_states,
-    banks,
-    conditions,
-    lane_parameters,
-)
+from piezo_sym.spec.tables import alone, bank_of, bank_states, banks, conditions, lane_parameters
 
 
 def unroll(model: Model, counts: Mapping[str, int]) -> Model:
