@@ -85,10 +85,14 @@ class _Blocks:
             "R": tuple(Slot(placed.element) for placed, _ in laws.followers),
             "C": tuple(Slot(port.name) for port in laws.ratio for _ in range(2)),
         }
-        # the through variable of an across source is positive where it takes power
+        # y*u is put in: the current through a voltage source flows out at its first node
         self.signs = {edge.key: -edge.sign for edge in laws.edges if edge.key[0] == "u"}
         bodies = (n for n, (_, port) in enumerate(laws.states) if isinstance(port, Body))
         self.rows = {laws.states[n][0].element: n for n in bodies}  # each body's entropy
+        # conduction takes entropy from its first body, and heat inputs bring it into theirs
+        processes, ports = enumerate(laws.processes), enumerate(laws.ports)
+        self.cooled = {n: p.first for n, (_, p) in processes if isinstance(p, Conductor)}
+        self.warmed = {n: p.body for n, (_, p) in ports if isinstance(p, Exchange | HeatInput)}
 
     def junction(self) -> Junction:
         """Return the junction, having checked that it preserves power."""
@@ -114,19 +118,15 @@ class _Blocks:
             symbol for block in (B, D) for e in block.full.values() for symbol in e.free_symbols
         }
         divisors = map(self.laws.expression, self.laws.divisors)
-        # conduction takes entropy from its first body, and heat inputs bring it into theirs
-        processes, ports = enumerate(self.laws.processes), enumerate(self.laws.ports)
-        cooled = {n: port.first for n, (_, port) in processes if isinstance(port, Conductor)}
-        warmed = {n: port.body for n, (_, port) in ports if isinstance(port, Exchange | HeatInput)}
         return Junction(
             circuit=circuit,
             states=self.slots["E"],
             processes=self.slots["W"],
             ports=self.slots["u"],
             J0=J0 - loops.between(B, B),
-            B=self._with_entropies(B, cooled),
+            B=self._with_entropies(B, self.cooled),
             D=D,
-            g=self._with_entropies(g - loops.between(B, D), warmed),
+            g=self._with_entropies(g - loops.between(B, D), self.warmed),
             N=N + loops.between(D, D),
             slopes=loops.slopes,
             shares=tuple(share for share in loops.shares if share[0] in used),

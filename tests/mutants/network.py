@@ -32,11 +32,11 @@ a coupling is left out
   = transducer_between_moving_nodes
 ## network/junction
 conduction leaves the second body
-  - n: port.first for
-  + n: port.second for
+  - n: p.first for
+  + n: p.second for
   = two airs
 heat comes to another body
-  - n: port.body for
+  - n: p.body for
   + n: next(e for e in ("body", "hot") if e in self.rows) for
   = two airs
 resistors in a loop push the other way
@@ -48,12 +48,12 @@ resistors in a loop do not change J0
   + J0=J0,
   = coil loop
 a source does not see a loop
-  - g=self._with_entropies(g - loops.between(B, D), warmed),
-  + g=self._with_entropies(g, warmed),
+  - g=self._with_entropies(g - loops.between(B, D), self.warmed),
+  + g=self._with_entropies(g, self.warmed),
   = driven coil loop
 a source sees a loop from the other side
-  - g=self._with_entropies(g - loops.between(B, D), warmed),
-  + g=self._with_entropies(g + loops.between(B, D), warmed),
+  - g=self._with_entropies(g - loops.between(B, D), self.warmed),
+  + g=self._with_entropies(g + loops.between(B, D), self.warmed),
   = driven coil loop
 ports see a loop from the other side
   - N=N + loops.between(D, D),
@@ -68,8 +68,8 @@ shares are left out of what drives processes
   + B, D = loops.columns(B), D
   = driven coil loop
 no heat is exchanged
-  - for n, (_, port) in ports if isinstance(port, Exchange | HeatInput)
-  + for n, (_, port) in ports if False
+  - if isinstance(p, Exchange | HeatInput)
+  + if False
   = two airs
 states are coupled the other way
   - J0, N = self._block("E", "E"), self._block("u", "u")
