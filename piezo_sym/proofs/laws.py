@@ -14,7 +14,7 @@ from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, Mul, Node, Num, Sy
 from piezo_sym.expressions.tree import replace as substituted
 from piezo_sym.iphs import IPHS
 from piezo_sym.iphs.definitions import costate_name
-from piezo_sym.proofs.assumptions import Assumptions, Law
+from piezo_sym.proofs.assumptions import Assumptions, Law, ties_of
 from piezo_sym.proofs.branches import (
     TooManyBranchesError,
     branches,
@@ -23,7 +23,6 @@ from piezo_sym.proofs.branches import (
     with_choices,
 )
 from piezo_sym.proofs.obligations import Obligation, Question, SignOf
-from piezo_sym.proofs.ties import ties
 from piezo_sym.spec.circuit import Placed
 from piezo_sym.spec.elements.ports import (
     Body,
@@ -41,7 +40,7 @@ from piezo_sym.spec.tables import condition_text
 
 def laws_of(iphs: IPHS) -> tuple[Law, ...]:
     """Return every law of a model, in declaration order."""
-    tied, stored = ties(iphs), dict(_energies(iphs))
+    tied, stored = ties_of(iphs), dict(_energies(iphs))
     found: list[Law] = []
     for placed in iphs.circuit.ports:
         found += filter(None, (_law(iphs, placed), stored.get(placed)))

@@ -15,6 +15,7 @@ from piezo_sym.expressions.text import spell
 from piezo_sym.expressions.tree import Cmp, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import DomainOracle, moved_counterexample, simple_counterexample
+from piezo_sym.proofs.assumptions import drive_of
 from piezo_sym.proofs.conditions import domain_conditions
 from piezo_sym.proofs.continuity import neighbour_questions
 from piezo_sym.proofs.domain import rounded_points
@@ -30,7 +31,6 @@ from piezo_sym.proofs.refutation import (
 from piezo_sym.proofs.sign_analysis import whole_sign
 from piezo_sym.proofs.signs.certificate import Case
 from piezo_sym.proofs.solvers import SolverLike, opinions
-from piezo_sym.proofs.ties import drive_of
 from piezo_sym.report import RESTS, Row, Verdict
 from piezo_sym.spec.tables import condition_text
 

@@ -82,7 +82,7 @@ every law has the first body's temperature
   +             law = substituted(port.law, {T.name: hot[0] for T in hot})
   +             return Law(element, port.output, law, port.letter
   = two bodies
-## proofs/ties
+## proofs/assumptions
 an element turned round has its state's sign
   - coefficient(drive)
   + coefficient(-drive)
