@@ -13,11 +13,9 @@ from itertools import islice
 from typing import TypeAlias
 
 from piezo_sym.expressions.calculus import neg
-from piezo_sym.expressions.functions import RECORDS
 from piezo_sym.expressions.tree import (
     ZERO,
     Add,
-    Call,
     Cmp,
     Div,
     Expr,
@@ -26,13 +24,11 @@ from piezo_sym.expressions.tree import (
     Neg,
     Node,
     Num,
-    Pow,
     children,
     decided,
     names,
-    walk,
 )
-from piezo_sym.proofs.branches import opposite
+from piezo_sym.proofs.branches import opposite, value_conditions
 from piezo_sym.proofs.signs.reduce import Positive, factored, reductions, settings
 from piezo_sym.proofs.signs.shift import rational_at
 
@@ -79,17 +75,7 @@ def _next_choice(node: Node, letter: str, positive: Positive, *, sure: bool) -> 
 
 def _is_total(condition: Cmp, positive: Positive) -> bool:
     """Return whether a comparison has a value for all values of its names."""
-    for part in walk(condition):
-        match part:
-            case Num() | Div(_, Num()):
-                continue
-            case Div(_, arg) if not positive(arg):
-                return False
-            case Call(function, args) if RECORDS[function].domain and not all(map(positive, args)):
-                return False
-            case Pow(base, e) if (e < 0 or e.denominator != 1) and not positive(base):
-                return False
-    return True
+    return all(positive(claim.left) for claim in value_conditions(condition))
 
 
 #: Most terms of an expanded sum.
