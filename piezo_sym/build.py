@@ -116,11 +116,11 @@ def report_and_texts(
     meanwhile : a context for the time from the texts to the verdicts, such as compiling ahead.
     """
     template = None
-    with examining(model) as found:
+    with examining(model) as (texts, verdicts):
         with suppress(ProofError):
-            template = _with_standalone_step(found.template(), model.name)
+            template = _with_standalone_step(texts.result(), model.name)
         with meanwhile(template) if template and meanwhile else nullcontext():
-            report = found.report()
+            report = verdicts.result()
     return report, template and replace(template, verdict=verdict_line(report))
 
 

@@ -130,7 +130,7 @@ class _Work:
             row, attack = self.prover.rows[number], hunt.attack(key)
             self.prover.rows[number] = self._done[number] = _attacked(row, attack)
             if attack and attack.worst:  # an extra row, after all others
-                self._done[self.program + 1 + number] = _rounding(attack)
+                self._done[self.program + 1 + number] = _rounding(row, attack)
 
     def _attackable(self, claims: Iterable[int]) -> dict[int, tuple[str, str]]:
         """Return the id and the element of the rows to attack; the other claims become OPEN.
@@ -172,10 +172,10 @@ def _attacked(row: Row, attack: Attack | None) -> Row:
     return replace(row, points=attack.points)
 
 
-def _rounding(attack: Attack) -> Row:
-    name = f"{attack.id} of {attack.element}" if attack.element else attack.id
-    statement = f"{name}: the generated module rounds to the other side"
+def _rounding(row: Row, attack: Attack) -> Row:
+    """Return the row that the module rounds to the other side, at a point that an attack found."""
+    statement = f"{row.name}: the generated module rounds to the other side"
     reason = "doubles cannot tell it from zero there; the exact value does not contradict it"
     return Row(
-        "rounding", attack.element, statement, Verdict.OPEN, attack.worst, reason, required=False
+        "rounding", row.element, statement, Verdict.OPEN, attack.worst, reason, required=False
     )

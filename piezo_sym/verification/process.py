@@ -10,13 +10,13 @@ import base64
 import os
 import pickle
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager, nullcontext
 from functools import cache
 from threading import Thread
 from time import monotonic
-from typing import TYPE_CHECKING, Any, NamedTuple, final
+from typing import TYPE_CHECKING, Any
 
 from piezo_sym.errors import PiezoError
 from piezo_sym.processes import Worker, beside
@@ -52,21 +52,13 @@ def examined(subject: IPHS | Model) -> Report:
     return _report(subject, Future())
 
 
-@final
-class Examination(NamedTuple):
-    """The results of an examination that is under way; a call waits for its result.
-
-    Both calls raise what `examined` raises; `template` raises a `ProofError` if the process ended
-    before it had the texts of the module.
-    """
-
-    template: Callable[[], Template]  # the texts of the module, before anything is proved of them
-    report: Callable[[], Report]  # the verdicts
-
-
 @contextmanager
-def examining(model: Model) -> Iterator[Examination]:
-    """Yield the examination of a model, which begins now; it is abandoned if the context fails."""
+def examining(model: Model) -> Iterator[tuple[Future[Template], Future[Report]]]:
+    """Yield the texts of a model's module and the verdicts on it, which are made from now on.
+
+    Both results raise what `examined` raises; the texts raise a `ProofError` if the process ended
+    before it had them.  All is abandoned if the context fails.
+    """
     texts: Future[Template] = Future()
     verdicts: Future[Report] = Future()
 
@@ -82,7 +74,7 @@ def examining(model: Model) -> Iterator[Examination]:
 
     Thread(target=examine, daemon=True).start()
     try:
-        yield Examination(texts.result, verdicts.result)
+        yield texts, verdicts
     except BaseException:
         if not verdicts.done():
             _examiner().close()

@@ -199,8 +199,8 @@ def test_a_program_whose_reading_dies_is_open(monkeypatch):
 
 def test_texts_come_before_the_verdicts_on_them():
     model = load("oscillator")
-    with examining(model) as found:
-        template, report = found.template(), found.report()
+    with examining(model) as (texts, verdicts):
+        template, report = texts.result(), verdicts.result()
     assert template == template_of(derive(model))
     assert report.rows == examined(model).rows
 
@@ -221,17 +221,17 @@ def test_texts_come_also_where_too_much_would_have_to_be_stated(monkeypatch):
 
 def test_errors_of_a_report_are_raised_where_it_is_asked_for():
     with examining("no model") as found:
-        for ask in (found.template, found.report):
+        for asked in found:
             with pytest.raises(AttributeError):
-                ask()
+                asked.result()
 
 
 def test_where_texts_are_not_made_in_time_who_asks_for_them_is_told(monkeypatch):
     monkeypatch.setattr(process, "PATIENCE", 0.01)
-    with examining(load("piezo_stack")) as found:
-        assert not found.report().proved
+    with examining(load("piezo_stack")) as (texts, verdicts):
+        assert not verdicts.result().proved
         with pytest.raises(ProofError, match=r"not decided in 0\.01 s"):
-            found.template()
+            texts.result()
 
 
 def test_who_is_stopped_leaves_no_examination_behind():
