@@ -1,8 +1,7 @@
 """Exact evaluation of suspicious points: in rationals where possible, else in enclosures.
 
-Input: a `Probe`, and numbers for parameters, inputs and states (floats are rationals).  Output: a
-`Point`, whose quantities are nan where `BITS` do not suffice; what breaks a row there, as text
-(`Exact`).
+Input: a `Space`, and numbers for its columns (floats are rationals).  Output: a `Point`, whose
+quantities are nan where `BITS` do not suffice; what breaks a row there, as text (`broken`).
 """
 
 from __future__ import annotations
@@ -18,7 +17,6 @@ from piezo_sym.expressions.exact_eval import TooCloseError, evaluated, exact, ho
 from piezo_sym.expressions.floats import Row
 from piezo_sym.expressions.tree import Cmp, Expr, LaneSum, names
 from piezo_sym.falsify.claims import Claim
-from piezo_sym.falsify.probe import Probe
 from piezo_sym.falsify.space import Array, Space
 
 #: Precision of enclosures [bit]: the numbers of a point may be 600 decades apart.
@@ -30,43 +28,27 @@ MOST_BITS = 40_000
 NAN = arb("nan")
 
 
-@final
-class Exact:
-    """Evaluates the rows of one system exactly."""
-
-    def __init__(self, probe: Probe) -> None:
-        self.probe = probe
-        self.conditions = [condition.tree for condition in probe.iphs.circuit.conditions]
-        self.points: dict[tuple[Any, ...], Point] = {}
-
-    def at(self, space: Space, values: Sequence[float | Fraction]) -> Point:
-        """Return the system at a point, computed once for all claims."""
-        key = (*space.counts.items(), *values)
-        if key not in self.points:
-            self.points[key] = Point(self, space, values)
-        return self.points[key]
-
-    def broken(self, claim: Claim, space: Space, point: Array) -> str | None:
-        """Return what breaks a row at a point of the domain, or None."""
-        at = self.at(space, point.tolist())
-        if not at.inside:
-            return None
-        if claim.id == "welldef":
-            return "a law has no value" if at.undefined(claim.element) else None
-        for said in claim.says if all(map(at.holds, claim.where)) else ():
-            for value in at.values([(said.value, said.bank)]):
-                if value < 0 or (said.strict and value == 0):
-                    return f"{said.name} = {text(value)}"
+def broken(claim: Claim, space: Space, point: Array) -> str | None:
+    """Return what breaks a row at a point of the domain, or None."""
+    at = Point(space, point.tolist())
+    if not at.inside:
         return None
+    if claim.id == "welldef":
+        return "a law has no value" if at.undefined(claim.element) else None
+    for said in claim.says if all(map(at.holds, claim.where)) else ():
+        for value in at.values([(said.value, said.bank)]):
+            if value < 0 or (said.strict and value == 0):
+                return f"{said.name} = {text(value)}"
+    return None
 
 
 @final
 class Point:
     """The quantities of a system at a point."""
 
-    def __init__(self, system: Exact, space: Space, values: Sequence[float | Fraction]) -> None:
+    def __init__(self, space: Space, values: Sequence[float | Fraction]) -> None:
         numbers = [exact(value) for value in values]
-        self.system, self.probe, self.counts = system, system.probe, space.counts
+        self.probe, self.counts = space.probe, space.counts
         self.numbers = {name: numbers[columns] for name, columns in space.columns_of.items()}
         self.banks = space.banks
         self._lanes = [_Lane(self, n) for n in range(max(self.counts.values(), default=1))]
@@ -85,7 +67,7 @@ class Point:
         """Whether the point is in the domain; None if undecided."""
         if max(self.counts.values(), default=0) > MOST_LANES:
             return None
-        results = {self.holds(condition) for condition in self.system.conditions}
+        results = {self.holds(condition.tree) for condition in self.probe.iphs.circuit.conditions}
         return False if False in results else None if None in results else True
 
     def holds(self, condition: Cmp) -> bool | None:

@@ -16,7 +16,7 @@ import numpy as np
 from piezo_sym.errors import ContradictionError
 from piezo_sym.expressions.tree import names
 from piezo_sym.falsify.claims import TOLERANCE, Claim, claim_of
-from piezo_sym.falsify.exact import Exact
+from piezo_sym.falsify.exact import broken
 from piezo_sym.falsify.jumps import Sides, jump, sides_of
 from piezo_sym.falsify.points import FEW, STAGES, Draw
 from piezo_sym.falsify.probe import probe_of
@@ -127,14 +127,26 @@ class Hunt:
     def attack(self, row: tuple[str, str]) -> Attack | None:
         """Return the result for a row, after the search; None if it has no value at a point.
 
-        Raises `ContradictionError` if it is false.
+        Its suspicious points are evaluated exactly.  Raises `ContradictionError` if it is false.
         """
-        track = self._tracks.get(row)
-        return track and self._judged(track, self._exact)
-
-    @cached_property
-    def _exact(self) -> Exact:
-        return Exact(self.space.probe)
+        if (track := self._tracks.get(row)) is None:
+            return None
+        claim, rounding = track.claim, None
+        most = CHECKED if claim.says else KEPT
+        for key, space, point in chain(*(worst[:most] for worst in track.worst.values())):
+            value = broken(claim, space, point) if key < 0 else None
+            if value:
+                raise self._contradiction(claim, value, space.words(point))
+            if key < ZERO and claim.says and not rounding:
+                plain = not space.at(point[:, None]).out_of_range[0]
+                rounding = (space, point) if plain else None  # not if products overflow
+        if claim.id == "continuous":
+            found = jump(claim, self.space, self.sides)
+            if found:
+                raise self._contradiction(claim, found[0], self.space.words(found[1]))
+        worst = rounding[0].words(rounding[1]) if rounding else None
+        points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
+        return Attack(claim.id, claim.element, points, worst)
 
     def _see(self, kind: str, space: Space, points: Array) -> None:
         seen = space.at(points)
@@ -188,25 +200,6 @@ class Hunt:
                 points = np.array([point for _, _, point in starts]).T
                 moved = self.draw.moved(points, CHILDREN, 1.0 + n)
                 yield "descended", self.space, self.draw.inside(moved)
-
-    def _judged(self, track: Track, exact: Exact) -> Attack:
-        """Return the result for a row, after exact evaluation at its suspicious points."""
-        claim, rounding = track.claim, None
-        most = CHECKED if claim.says else KEPT
-        for key, space, point in chain(*(worst[:most] for worst in track.worst.values())):
-            value = exact.broken(claim, space, point) if key < 0 else None
-            if value:
-                raise self._contradiction(claim, value, space.words(point))
-            if key < ZERO and claim.says and not rounding:
-                plain = not space.at(point[:, None]).out_of_range[0]
-                rounding = (space, point) if plain else None  # not if products overflow
-        if claim.id == "continuous":
-            found = jump(claim, self.space, self.sides, exact)
-            if found:
-                raise self._contradiction(claim, found[0], self.space.words(found[1]))
-        worst = rounding[0].words(rounding[1]) if rounding else None
-        points = int(str(track.points)[0]) * 10 ** (len(str(track.points)) - 1)
-        return Attack(claim.id, claim.element, points, worst)
 
     @cached_property
     def sides(self) -> list[Sides]:

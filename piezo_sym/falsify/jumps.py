@@ -15,9 +15,9 @@ from typing import Any, final
 import numpy as np
 from flint import ctx, fmpq
 
-from piezo_sym.expressions.exact_eval import exact as exactly
+from piezo_sym.expressions.exact_eval import exact
 from piezo_sym.falsify.claims import Claim
-from piezo_sym.falsify.exact import BITS, Exact, Point, text
+from piezo_sym.falsify.exact import BITS, Point, text
 from piezo_sym.falsify.points import Roots
 from piezo_sym.falsify.space import EXTREME, LARGEST, LEAST, Array, Evaluation, Mask, Space
 
@@ -34,9 +34,7 @@ WIDER = (Fraction(0), Fraction(1, 10**15), Fraction(1, 10**12))
 Values = list[Any]
 
 
-def jump(
-    claim: Claim, space: Space, found: Iterable[Sides], exact: Exact
-) -> tuple[str, Array] | None:
+def jump(claim: Claim, space: Space, found: Iterable[Sides]) -> tuple[str, Array] | None:
     """Return a jump of a law at one of the kinks found, and a point beside it, or None."""
     laws = [(what, claim.element) for what in space.probe.kinds.get(claim.element, ())]
     for sides, law in product(found, laws):
@@ -46,7 +44,7 @@ def jump(
             if big[n] > JUMP:
                 ends = sides.low.points[:, n], sides.high.points[:, n]
                 change = float(leap[n]) if leap[n] < LARGEST else 0.0  # beside a pole: any change
-                value = _confirmed(claim, space, *ends, change, exact)
+                value = _confirmed(claim, space, *ends, change)
                 if value:
                     return value, ends[1]
     return None
@@ -83,16 +81,14 @@ def _leap(sides: Sides, law: tuple[str, str]) -> tuple[Array, Array]:
     return most, np.where(leap == most, size, 0).max(axis=0, initial=LEAST)
 
 
-def _confirmed(
-    claim: Claim, space: Space, low: Array, high: Array, leap: float, exact: Exact
-) -> str | None:
+def _confirmed(claim: Claim, space: Space, low: Array, high: Array, leap: float) -> str | None:
     """Return the jump of a law between two points, or None if it fades as they meet."""
     column = int(np.flatnonzero(low != high)[0])
     near, far = (Fraction(float(side[column])) for side in (low, high))
-    point = [exactly(value) for value in low.tolist()]
+    point = [exact(value) for value in low.tolist()]
 
     def there(value: Fraction) -> Point:
-        return Point(exact, space, [*point[:column], value, *point[column + 1 :]])
+        return Point(space, [*point[:column], value, *point[column + 1 :]])
 
     # of this element alone: the laws of other elements may jump on purpose at the same point
     laws = [space.probe.laws[what, claim.element] for what in space.probe.kinds[claim.element]]
@@ -103,7 +99,7 @@ def _confirmed(
     for wider in WIDER:
         off = wider * max(abs(near), abs(far)) * (1 if far > near else -1)
         with ctx.workprec(BITS):
-            if not _gap(values_at(near - off), values_at(far + off)) > exactly(leap) / 10:
+            if not _gap(values_at(near - off), values_at(far + off)) > exact(leap) / 10:
                 continue
             found = _narrowed(values_at, near - off, far + off)
             if not found or not all(there(side).inside for side in found[1]):
