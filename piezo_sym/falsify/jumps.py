@@ -36,7 +36,7 @@ Values = list[Any]
 
 def jump(claim: Claim, space: Space, found: Iterable[Sides]) -> tuple[str, Array] | None:
     """Return a jump of a law at one of the kinks found, and a point beside it, or None."""
-    laws = [(what, claim.element) for what in space.probe.kinds.get(claim.element, ())]
+    laws = [(what, claim.element) for what in space.probe.kinds(claim.element)]
     for sides, law in product(found, laws):
         leap, size = _leap(sides, law)
         big = np.where(sides.near, leap / size, 0)
@@ -91,7 +91,7 @@ def _confirmed(claim: Claim, space: Space, low: Array, high: Array, leap: float)
         return Point(space, [*point[:column], value, *point[column + 1 :]])
 
     # of this element alone: the laws of other elements may jump on purpose at the same point
-    laws = [space.probe.laws[what, claim.element] for what in space.probe.kinds[claim.element]]
+    laws = [space.probe.laws[what, claim.element] for what in space.probe.kinds(claim.element)]
 
     def values_at(value: Fraction) -> Values:
         return there(value).values(laws)

@@ -98,13 +98,10 @@ class Probe:
         rows = ((n, bank) for n, (_, bank) in self.defined.items() if n.startswith("production "))
         return add(*(LaneSum(Sym(name), bank) if bank else Sym(name) for name, bank in rows))
 
-    @cached_property
-    def kinds(self) -> Mapping[str, list[str]]:
-        """The kinds of each element's laws that may jump: all but efforts and slopes."""
-        found: dict[str, list[str]] = {}
-        for what, element in self.laws:
-            found.setdefault(element, []).extend([what] if what not in {"effort", "slope"} else [])
-        return found
+    def kinds(self, element: str) -> list[str]:
+        """Return the kinds of an element's laws that may jump: all but efforts and slopes."""
+        own = (what for what, placed in self.laws if placed == element)
+        return [what for what in own if what not in {"effort", "slope"}]
 
     @cached_property
     def of_element(self) -> Mapping[str, list[Row]]:

@@ -11,6 +11,7 @@ fault without a new one.
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import islice
 from typing import final
 
@@ -19,7 +20,6 @@ from piezo_sym.expressions.dimensions import (
     NONE,
     Dimension,
     Match,
-    Powers,
     dimension,
     faults,
     times,
@@ -63,13 +63,16 @@ MOST_RESPELLED = 100
 @final
 @dataclass(frozen=True)
 class Check:
-    """A rule on units, its place, the powers of names in it, and the unit missing on its left."""
+    """A rule on units, with its place."""
 
     place: Place
     rule: Match
-    excess: Powers
-    gap: Dimension
     origins: Origins
+
+    @cached_property
+    def gap(self) -> Dimension:
+        """The unit missing on its left."""
+        return self.rule.gap(self.place.words)
 
     @property
     def where(self) -> str:
@@ -92,19 +95,14 @@ def units(iphs: IPHS) -> Iterator[Row]:
     """Yield one row if every unit fits, else a row for each fault."""
     model = iphs.model
     known = tuple(places(model))
-    checks = tuple(_check(model, place, rule) for place in known for rule in place.rules())
-    found = ((place, rule) for place in known for rule in faults(place.rules(), place.words))
-    wrong = [_check(model, *fault) for fault in found]
+    checks = tuple(Check(p, rule, model.origins) for p in known for rule in p.rules())
+    wrong = [Check(p, rule, model.origins) for p in known for rule in faults(p.rules(), p.words)]
     if not wrong:
         yield Row("units", "", STATEMENT, Verdict.PROVED)
     for fault in wrong:
         remedy = _remedy(fault, checks) + _other_kind(fault, model) + _other_field(fault, model)
         reason = f"{fault.where}: {_finding(fault, model)}; {remedy}"
         yield Row("units", fault.place.element, STATEMENT, Verdict.REFUTED, None, reason)
-
-
-def _check(model: Model, place: Place, rule: Match) -> Check:
-    return Check(place, rule, rule.excess, rule.gap(place.words), model.origins)
 
 
 def _finding(fault: Check, model: Model) -> str:
@@ -185,7 +183,7 @@ def _remedy(fault: Check, checks: tuple[Check, ...]) -> str:
 
 
 def _power(name: str, check: Check) -> Fraction:
-    return Fraction(0) if name in check.place.fixed else check.excess.get(name, Fraction(0))
+    return Fraction(0) if name in check.place.fixed else check.rule.excess.get(name, Fraction(0))
 
 
 def _fitting(name: str, checks: Iterable[Check]) -> Dimension | None:
