@@ -23,6 +23,8 @@ TINY = 1e-280
 TABLE = 8192
 #: Points evaluated beside a root.
 BESIDE = 24
+#: Halvings of a bracket that are evaluated together, and of how many brackets one alone is.
+HALVINGS, MANY = 3, 2000
 #: Searches for zeros of edges, from known points and then from points on edges; most per edge.
 STAGES = (("kinks", 16), ("corners", 12))
 FAR = (-290, -100, -30, -15, -9, -6)
@@ -125,16 +127,29 @@ class Draw:
 
     def _bisected(self, roots: Roots) -> Roots:
         """Return brackets narrowed to neighbouring floats."""
-        lanes = np.arange(len(roots.edge))
 
         def signs(value: Array) -> Array:
-            """Return the signs of the edges at values of their columns."""
-            return np.sign(self.space.at(roots.at(value)).edges[roots.edge, lanes])
+            """Return the signs of the edges at values of their columns, several times each."""
+            again = np.resize(np.arange(len(roots.edge)), len(value))
+            points = roots.base[:, again]
+            points[roots.column[again], np.arange(len(value))] = value
+            edges = self.space.at(points).edges
+            return np.sign(edges[roots.edge[again], np.arange(len(value))])
 
-        low, high, sign = _key(roots.low), _key(roots.high), signs(roots.low)
-        while (((middle := _middle(low, high)) != low) & (middle != high)).any():
-            same = signs(_float(middle)) == sign
-            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        low, high = _key(roots.low), _key(roots.high)
+        sign = signs(roots.low)
+        halvings = HALVINGS if len(sign) < MANY else 1
+        lanes = np.arange(len(sign))
+        while ((_middle(low, high) != low) & (_middle(low, high) != high)).any():
+            ends = np.array([low, high])
+            for _ in range(halvings):
+                between = _middle(ends[:-1], ends[1:])
+                ends = np.insert(ends, np.arange(1, len(ends)), between, axis=0)
+            same = signs(_float(ends[1:-1].ravel())).reshape(-1, len(sign)) == sign
+            at = np.zeros_like(lanes)
+            for half in range(halvings - 1, -1, -1):
+                at += same[at + (1 << half) - 1, lanes] << half
+            low, high = ends[at, lanes], ends[at + 1, lanes]
         ends = np.array([_float(low), _float(high)])
         ends = np.where(np.abs(ends).max(axis=0) < LEAST, [[-TINY], [TINY]], ends)
         return Roots(roots.edge, roots.column, roots.base, *ends)
