@@ -130,12 +130,14 @@ def primitive(value: Value, *, partly: bool) -> tuple[Fraction, Mono, Value]:
     """Return (number, common factors, rest) of a value; the leading coefficient of rest is 1 or -1.
 
     With `partly`, only positive factors (or factors >= 0 with a positive exponent) are taken out.
+    A factor with a fractional exponent is one: where the root of it exists, it is >= 0.
     """
     field, least = value.field, dict[int, Exponent]()
     monos = [dict(mono) for mono in value.terms]
     for g in value.generators():
         e, known = min(mono.get(g, 0) for mono in monos), sign_of(field, g)
-        if e and (not partly or known == 2 or (known == 1 and e > 0)):
+        is_root = Fraction(e).denominator != 1
+        if e and (not partly or is_root or known == 2 or (known == 1 and e > 0)):
             least[g] = e
     common = tuple(sorted(least.items()))
     rest = value * Value(field, {tuple((g, -e) for g, e in common): 1}) if common else value
