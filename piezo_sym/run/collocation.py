@@ -19,7 +19,6 @@ from piezo_sym.run.dataset import Trajectory
 from piezo_sym.run.engine.batch import Batch, Stepping
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.library import Layout
-from piezo_sym.run.engine.records import DOUBLE
 from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.stuck import stuck_error
 from piezo_sym.run.system import QUIET, DrivenModule
@@ -179,7 +178,7 @@ def set_scales(
 ) -> None:
     """Set the scale of each state of runs from x (runs, n), by a coarse run."""
     first = systems[0]
-    batch.call("survey", DOUBLE(min(first.inputs.max_step, SURVEYED * first.inputs.duration)))
+    batch.survey(min(first.inputs.max_step, SURVEYED * first.inputs.duration))
     batch.largest[:] = first.scale(batch.largest)
     quiet = batch.largest < QUIET / tolerance
     if not quiet.any():

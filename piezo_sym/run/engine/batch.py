@@ -19,7 +19,15 @@ from piezo_sym.interrupts import held_back
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.engine.engine import Engine
 from piezo_sym.run.engine.library import Layout, Sources, read_source, shared_library
-from piezo_sym.run.engine.records import LONG, InputRecords, addresses, at, c_record, record_dtype
+from piezo_sym.run.engine.records import (
+    DOUBLE,
+    LONG,
+    InputRecords,
+    addresses,
+    at,
+    c_record,
+    record_dtype,
+)
 from piezo_sym.run.inputs import Inputs
 from piezo_sym.run.module import GeneratedModule
 
@@ -190,6 +198,10 @@ class Batch:
     def function(self, name: str) -> Any:
         """Return the C function MODEL(name)."""
         return getattr(self._library, f"{self._engine.module.NAME}_{name}")
+
+    def survey(self, longest: float) -> None:
+        """Set `largest` by coarse steps of at most `longest` [s]."""
+        self.call("survey", DOUBLE(longest))
 
     def go(self, steps: int) -> bool:
         """Take at most `steps` steps in each lane; return whether runs are left."""
