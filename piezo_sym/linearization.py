@@ -32,14 +32,15 @@ from piezo_sym.modules import module_of
 from piezo_sym.run.checks import FloatArray, calling, checked_call, known_keys
 from piezo_sym.run.guard import stop_rows
 from piezo_sym.run.module import GeneratedModule, row_names
-from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
+from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters, start_of
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 
 WHERE = "linearize"
 #: Distances from a point, over the least one: a derivative that grows from each to the next by more
-#: than GROWTH has no bound there.  The least is of round-off, or LEAST at zero.
-NEAR, GROWTH, LEAST = (256.0, 16.0, 1.0), 1.1, 1e-100
+#: than GROWTH has no bound there.  The least is of round-off, or LEAST at zero.  What a derivative
+#: adds to a rate is round-off below this part of what others add.
+NEAR, GROWTH, LEAST, ROUND_OFF = (256.0, 16.0, 1.0), 1.1, 1e-100, 1e-10
 
 
 @final
@@ -95,7 +96,7 @@ class LinearModel:
 def linearize(
     model: str | Path | Model,
     *,
-    at: OperatingPoint | Mapping[str, LaneValue] | None = None,
+    at: OperatingPoint | Mapping[str, LaneValue] | Any = None,
     inputs: Mapping[str, float] | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
 ) -> LinearModel:
@@ -112,7 +113,8 @@ def linearize(
     ----------
     model : the name of a shipped spec, the path of a spec file, or a `Model`.
     at : an `operating_point`; or state -> number, of a bank also one per lane, SI units, with the
-        other states at their initial values. When left out, the operating point of the inputs.
+        other states at their initial values; or a run (Dataset), whose last instant it is, with its
+        inputs and parameters. When left out, the operating point of the inputs.
     inputs : name -> number, SI units; those left out are as in `at`, or have their defaults.
     parameters : as for `simulate`; when left out, those of `at`.
 
@@ -127,12 +129,19 @@ def linearize(
         at = operating_point(module, inputs=inputs, parameters=parameters)
     if isinstance(at, OperatingPoint):
         initial, parameters = at.initial, at.parameters if parameters is None else parameters
-        given: Any = known_keys(inputs, at.inputs, f"{WHERE}.inputs")
-        inputs = {**at.inputs, **given}
+        changed: Any = known_keys(inputs, at.inputs, f"{WHERE}.inputs")
+        inputs = {**at.inputs, **changed}
+    elif hasattr(at, "data_vars"):
+        run: Any = at
+        _, given, parameters = start_of(module, None, run, parameters)
+        initial = given or {}
+        last = run.isel(time=-1) if run.time.ndim else run
+        own = (record.name for record in module.INPUTS if record.name in last.data_vars)
+        inputs = {name: float(last[name]) for name in own} | dict(inputs or {})
     elif isinstance(at, Mapping):
         initial = at
     else:
-        expected = "an OperatingPoint, or state -> value"
+        expected = "an OperatingPoint, a run, or state -> value"
         raise UsageError(f"{quote(at)} is no state", f"{WHERE}.at", expected)
     p = read_parameters(module, parameters)
     u = read_constants(module, inputs, f"{WHERE}.inputs")
@@ -201,11 +210,14 @@ def _linear(
 
 def _is_steep(derivatives: Any, p: Any, point: FloatArray, there: FloatArray) -> bool:
     """Return whether a derivative is unbounded near a point, like that of a root at zero."""
-    step = np.diag(np.maximum(4 * np.finfo(float).eps * np.abs(point), LEAST))
+    size = np.abs(point)
+    step = np.diag(np.maximum(4 * np.finfo(float).eps * size, LEAST))
+    floor = ROUND_OFF * np.max(there * size, axis=1)[:, None, None]
     for side in (1.0, -1.0):
         around = (point[:, None] + side * times * step for times in NEAR)
         far, near, nearest = (np.abs(derivatives.jacobian(x, np.empty(0), p)) for x in around)
         grows = (near > GROWTH * far) & (nearest > GROWTH * near)
-        if np.any(grows & (nearest > GROWTH * there[..., None])):
+        counts = (size == 0)[:, None] | (nearest * size[:, None] > floor)
+        if np.any(grows & counts & (nearest > GROWTH * there[..., None])):
             return True
     return False

@@ -26,7 +26,7 @@ from piezo_sym.run.checks import FloatArray, calling, known_keys, number
 from piezo_sym.run.guard import check_start, stop_rows
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import GeneratedModule, by_name, checked, names_elsewhere, row_name
-from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters
+from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters, start_of
 from piezo_sym.run.system import DrivenModule
 
 WHERE = "operating_point"
@@ -101,7 +101,7 @@ def operating_point(
     inputs: Mapping[str, float] | None = None,
     temperatures: Mapping[str, float] | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
-    initial: Mapping[str, LaneValue] | None = None,
+    initial: Mapping[str, LaneValue] | Any = None,
 ) -> OperatingPoint:
     """Return the state of rest under constant inputs that a run from the initial state approaches.
 
@@ -122,8 +122,8 @@ def operating_point(
     With stops or other hysteresis there are many states of rest, and history decides between them.
     Returned is where a run from `initial` rests, the inputs being constant from its start, so with
     what its overshoot makes slip. For another history, such as a slow ramp, simulate it and give
-    its end: ``initial={name: run[name][-1] for name in ...}``. Runs hold no body: with
-    `temperatures` the search alone decides, whose damped motion slips less.
+    the run as `initial`, whose end it is. Runs hold no body: with `temperatures` the search alone
+    decides, whose damped motion slips less.
 
     Raises
     ------
@@ -132,7 +132,8 @@ def operating_point(
         in the domain, or the temperature of a free body is undetermined because nothing exchanges
         heat with the surroundings.
     """
-    p = read_parameters(checked(module), parameters)
+    _, initial, parameters = start_of(checked(module), None, initial, parameters)
+    p = read_parameters(module, parameters)
     u = read_constants(module, inputs)
     start = read_initial(module, p, u, initial)
     system = DrivenModule(module, p, read_inputs(module, by_name(module.INPUTS, p, u), 1.0))

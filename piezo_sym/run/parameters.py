@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from piezo_sym.errors import RunError, UsageError, quote
+from piezo_sym.errors import RunError, UsageError, listing, quote
 from piezo_sym.run.checks import (
     FloatArray,
     increasing,
@@ -193,6 +193,9 @@ def start_of(
         remedy = "give the run's own spec, and changed values as parameters (--set); "
         remedy += "of a spec whose laws have changed, give each state in 'initial' (--initial)"
         raise UsageError(what, WHERE, expected, remedy if model == module.NAME else "")
+    if missing := [record.name for record in module.STATES if record.name not in run.data_vars]:
+        what = f"this Dataset has no {listing(map(repr, missing))}"
+        raise UsageError(what, WHERE, "a run with all states")
     last = run.isel(time=-1) if run.time.ndim else run  # of one instant
     state: dict[str, Any] = {record.name: last[record.name].values for record in module.STATES}
     used: dict[str, Any] = {}

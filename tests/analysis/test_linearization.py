@@ -134,19 +134,6 @@ def test_messages_name_its_own_arguments(given, said) -> None:  # type: ignore[n
     assert "initial'" not in str(error.value)
 
 
-def test_a_run_is_no_state_but_has_one() -> None:
-    run = simulate("piezo_stack", inputs={"V_in": 100.0}, duration=1e-3, times=2)
-    for refuses in (lambda at: linearize("piezo_stack", at=at), rests):
-        with pytest.raises(UsageError, match="a Dataset is no state") as error:
-            refuses(run)
-        state = eval(error.value.remedy.removeprefix("give "), {"run": run})
-        refuses(state)
-
-
-def rests(initial: object) -> object:
-    return operating_point("piezo_stack", initial=initial)
-
-
 def _words(records: tuple) -> list[str]:  # type: ignore[type-arg]
     return [record.name for record in records]
 
@@ -158,3 +145,59 @@ def _named(module, p, x: np.ndarray) -> dict[str, object]:  # type: ignore[no-un
         found[record.name] = x[start : start + size] if record.bank else float(x[start])
         start += size
     return found
+
+
+SHARED_NODE = """
+[model]
+name = "eddy"
+[parameters]
+m = { value = 80, unit = "g" }
+k = { value = 3e7, unit = "N/m" }
+ep = { value = 6e-3, unit = "m/Wb**2" }
+L = { value = 8.0, unit = "mH" }
+R = { value = 3.0, unit = "ohm" }
+g = { value = 0.02, unit = "S" }
+d = { value = 200.0, unit = "N*s/m" }
+T_0 = { value = 300.0, unit = "K" }
+c = { value = 300.0, unit = "J/K" }
+h = { value = 0.8, unit = "W/K" }
+[inputs]
+V = { unit = "V" }
+T_e = { unit = "K", default = 300.0 }
+[domain]
+assume = ["d >= 0", "R >= 0", "g >= 0", "h >= 0", "T_e > 0", "L > 0"]
+[elements]
+supply = { kind = "voltage_source", between = ["in", "gnd"], input = "V" }
+copper = { kind = "resistor", between = ["in", "a"], voltage = "R*i", heats = "rod" }
+iron = { kind = "resistor", between = ["a", "gnd"], current = "g*v*T_0/T", heats = "rod" }
+core.kind = "storage"
+core.energy = "k/2*(x - ep*phi**2)**2 + phi**2/(2*L)"
+core.states.phi = { rate = "voltage", between = ["a", "gnd"] }
+core.states.x = { rate = "velocity", between = ["tip", "wall"] }
+head = { kind = "mass", at = "tip", mass = "m", state = "p" }
+oil = { kind = "damper", between = ["tip", "wall"], force = "d*v", heats = "rod" }
+rod = { kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }
+loss = { kind = "ambient", body = "rod", conductance = "h", input = "T_e" }
+"""
+
+
+def test_a_derivative_that_is_round_off_is_not_without_bound() -> None:
+    """At rest the two currents cancel in the slope of the flux over the temperature."""
+    model = parse(SHARED_NODE)
+    at = operating_point(model, inputs={"V": 6.0}).initial
+    for T in np.random.default_rng(1).uniform(290.0, 420.0, 100).tolist():
+        given = {name: value for name, value in at.items() if name != "S"} | {"T_rod": T}
+        assert np.isfinite(linearize(model, at=given, inputs={"V": 6.0}).A).all()
+
+
+def test_a_run_is_a_point_at_its_end() -> None:
+    run = simulate("piezo_stack", inputs={"V_in": 50.0}, duration=0.002, parameters={"d": 300.0})
+    linear = linearize("piezo_stack", at=run)
+    assert linear.x[0] == run.q.values[-1]
+    assert linear.u[1] == 50.0
+    assert linear.A[1, 1] == pytest.approx(-300.0 / 3.5e-3)
+    assert linearize("piezo_stack", at=run.isel(time=3)).x[0] == run.q.values[3]
+    with pytest.raises(UsageError, match="linearize.at: this Dataset has no 'p', 'Q_C', 'phi'"):
+        linearize("piezo_stack", at=run[["q", "S"]])
+    rest = operating_point("piezo_stack", inputs={"V_in": 50.0}, initial=run)
+    assert rest.parameters["d"] == 300.0
