@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from piezo_sym.cli.output import about, named_as_options, print_table, warnings_as_lines
+from piezo_sym.cli.results import events_of, tables, write
 from piezo_sym.cli.words import Units, in_unit, pairs
 from piezo_sym.errors import (
     FileError,
@@ -22,7 +23,7 @@ from piezo_sym.errors import (
     UsageError,
     listing,
 )
-from piezo_sym.files import near_file, path_text, write_bytes, write_together, zarr_library
+from piezo_sym.files import near_file, path_text, zarr_library
 
 if TYPE_CHECKING:
     import xarray
@@ -156,7 +157,7 @@ def _aliased(signals: Mapping[str, Any], result: xarray.Dataset) -> Iterator[str
 def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) -> None:
     """Write a result, then print it, so that a closed pipe does not lose it."""
     if out is not None and not _is_store(out):
-        _write(result, out)
+        write(result, out)
     _print(result)
     for line in _event_lines(result):
         typer.echo(line)
@@ -165,21 +166,13 @@ def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) ->
     for line in assumed:
         typer.echo(line)
     if out is not None:
-        _, *tables = _tables(result, out).values() if out.suffix == ".csv" else (out,)
-        typer.echo(f"{out}" + f"; events: {listing(map(str, tables))}" * bool(tables))
-
-
-def _events(result: xarray.Dataset) -> Mapping[str, xarray.DataArray]:
-    """Return the times of each event of a run."""
-    from piezo_sym.run.events import EVENT
-
-    about = ((str(n), hits, str(hits.attrs.get("long_name"))) for n, hits in result.coords.items())
-    return {name: hits for name, hits, text in about if text.startswith(EVENT)}
+        _, *others = tables(result, out).values() if out.suffix == ".csv" else (out,)
+        typer.echo(f"{out}" + f"; events: {listing(map(str, others))}" * bool(others))
 
 
 def _event_lines(result: xarray.Dataset) -> Iterator[str]:
     """Yield a line for each event of a run: how often it happens, and when at first."""
-    for name, hits in _events(result).items():
+    for name, hits in events_of(result).items():
         first = ", ".join(f"{t:.9g}" for t in hits.values[:4]) + ", ..." * (hits.size > 4)
         yield f"event {name}, {hits.size} in all: t = {first or 'never'}"
 
@@ -227,7 +220,7 @@ def keeping(out: Path | None) -> Iterator[None]:
             typer.echo(f"{reached}; --out would keep it until here", err=True)
         if out is not None and partial is not None:
             if not _is_store(out):
-                _write(partial, out)
+                write(partial, out)
             until = f"{path_text(out)} holds the run until t = {float(partial.time[-1]):.6g} s"
             if isinstance(stopped, RunError):
                 stopped.remedy = f"{stopped.remedy}; {until}" if stopped.remedy else until
@@ -254,35 +247,3 @@ def _digits(value: float, change: float) -> int:
     """Return how many digits show a value, and three of its change unless it is round-off."""
     ratio = abs(value / change) if change else 0.0
     return DIGITS + max(0, math.ceil(math.log10(ratio)) - 3) if 1 < ratio < ROUND_OFF else DIGITS
-
-
-def _write(result: xarray.Dataset, path: Path) -> None:
-    """Write a result atomically; its folder is created where it does not exist."""
-    if path.suffix == ".nc":
-        write_bytes(path, bytes(result.to_netcdf(engine="scipy")))
-    else:
-        tables = _tables(result, path).items()
-        texts = ((file, columns(result, over).to_csv(index=False)) for over, file in tables)
-        write_together({file: text.encode() for file, text in texts})
-
-
-def _tables(result: xarray.Dataset, path: Path) -> Mapping[str, Path]:
-    """Return the tables of a .csv: of quantities over time, and over the times of each event."""
-    return {"time": path} | {
-        name: path.with_stem(f"{path.stem}_{name}") for name in _events(result)
-    }
-
-
-def columns(result: xarray.Dataset, over: str) -> Any:
-    """Return what is `over` some times as a table: a column per quantity, for a bank per lane."""
-    import pandas as pd
-
-    from piezo_sym.run.sample_files import header_of
-
-    series = {header_of(over, "s"): result[over].to_series()}
-    for name, variable in result.data_vars.items():
-        if over in variable.dims:
-            frame, unit = variable.to_pandas(), str(variable.attrs["units"])
-            lanes = {name: frame} if variable.ndim == 1 else frame.add_prefix(f"{name}_")
-            series |= {header_of(lane, unit): values for lane, values in lanes.items()}
-    return pd.DataFrame(series)

@@ -24,6 +24,7 @@ from piezo_sym.expressions.tidying import collected
 from piezo_sym.expressions.tree import ZERO, Call, Cmp, Expr, If, Sym, names, rebuild, walk
 from piezo_sym.iphs.system import System
 from piezo_sym.network import Driven, Junction, port_order
+from piezo_sym.network.nodes import beside_chain
 from piezo_sym.spec.circuit import Circuit
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PowerVariable
@@ -234,7 +235,7 @@ def check_stops(
                 f"{port.domain.variable(port.imposes.other).name} of {quote(efforts[other])}",
                 f"elements.{placed.element}",
                 f"a {given.name} that is a state's, or an input",
-                f"put {with_article(name)} {where}",
+                beside_chain(circuit, [placed.element]) or f"put {with_article(name)} {where}",
             )
 
 

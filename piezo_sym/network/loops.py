@@ -12,7 +12,7 @@ Where every slope is >= 0, det(I - M G) >= 1, for it is a sum of squares of Pfaf
 products of slopes, that of the empty set being 1.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import final
 
@@ -25,6 +25,7 @@ from piezo_sym.errors import NetworkError, listing, quote, with_article
 from piezo_sym.expressions.tree import Expr
 from piezo_sym.network.inverse import slope_of
 from piezo_sym.network.kirchhoff import Laws
+from piezo_sym.network.nodes import beside_chain, is_reference
 from piezo_sym.spec.elements import kind_of
 from piezo_sym.spec.elements.domains import PowerVariable
 from piezo_sym.spec.elements.ports import DissipativePort
@@ -117,9 +118,8 @@ def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slo
     members = [laws.processes[k] for k in group]
     names = listing(quote(placed.element) for placed, _ in members)
     what = f"{names} determine each other's flow"
-    domain = next(p.domain for _, p in members if isinstance(p, DissipativePort))
-    store = kind_of("store", domain, PowerVariable.ACROSS)
-    between = f"put {with_article(store)} at the node between them"
+    resistors = {placed.element: p for placed, p in members if isinstance(p, DissipativePort)}
+    between = _between(resistors, next(iter(resistors)))
     if len(group) > MOST:
         remedy = f"join those in series or in parallel, or {between}"
         raise NetworkError(what, "network", f"at most {MOST} that do", remedy)
@@ -128,10 +128,23 @@ def _slopes(laws: Laws, group: tuple[int, ...], taken: set[str]) -> Iterator[Slo
         if isinstance(port, DissipativePort) and not placed.bank:
             law = slope_of(port.law, port.letter)
         if law is None:
-            remedy = between if placed.bank else f"{between}, or make the law linear"
+            between = _between(resistors, placed.element)
+            chain = beside_chain(laws.circuit, resistors)
+            remedy = chain or between if placed.bank else f"{between}, or make the law linear"
             expected = "linear laws, and none of a bank" if placed.bank else "linear laws"
             raise NetworkError(what, f"elements.{placed.element}", expected, remedy)
         yield Slope(_symbol(f"slope_{placed.element}", taken), k, law)
+
+
+def _between(resistors: Mapping[str, DissipativePort], one: str) -> str:
+    """Return the advice to put a store where `one` of some resistors meets the others."""
+    own, nodes = resistors.get(one, next(iter(resistors.values()))), set[str]()
+    for element, port in resistors.items():
+        if element != one and port.domain == own.domain:
+            nodes |= {node for node in port.branch if node in own.branch and not is_reference(node)}
+    store = kind_of("store", own.domain, PowerVariable.ACROSS)
+    at = f"at node '{nodes.pop()}'" if len(nodes) == 1 else "at the node between them"
+    return f"put {with_article(store)} {at}"
 
 
 def _loop_inverse(

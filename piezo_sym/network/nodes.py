@@ -9,7 +9,8 @@ from typing import TypeVar
 
 from piezo_sym.errors import NetworkError, listing, nearest, quote, with_article
 from piezo_sym.spec.circuit import LAST, Circuit, lane_ends
-from piezo_sym.spec.elements.domains import REFERENCES, PhysicalDomain
+from piezo_sym.spec.elements import kind_of
+from piezo_sym.spec.elements.domains import REFERENCES, PhysicalDomain, PowerVariable
 from piezo_sym.spec.elements.ports import Body, Branch, Coupling, DissipativePort, Source, Storage
 from piezo_sym.spec.tables import alone
 
@@ -45,6 +46,19 @@ def _chained(circuit: Circuit) -> Iterator[tuple[str, Branch, PhysicalDomain]]:
         if isinstance(port, Storage | DissipativePort):
             yield element, (first, start), port.domain
             yield element, (end, last), port.domain
+
+
+def beside_chain(circuit: Circuit, elements: Iterable[str]) -> str:
+    """Return the advice to those of some elements that end at cells in series; '' if none does."""
+    ends = {node for pair in circuit.chains.values() for node in pair if not is_reference(node)}
+    known = [*branches(circuit)]
+    at = [(e, n, domain) for e, pair, domain in known if e in elements for n in pair if n in ends]
+    if not at:
+        return ""
+    names, node, domain = listing(dict.fromkeys(quote(e) for e, _, _ in at)), *at[0][1:]
+    spring = kind_of("store", domain, PowerVariable.THROUGH)
+    given = f"cells in series follow the {domain.through.name} of {with_article(spring)} or source"
+    return f"connect {names} to another node than '{node}': {given.replace('_', ' ')}"
 
 
 def is_inner(node: str) -> bool:

@@ -85,6 +85,8 @@ def _contradiction(laws: Laws, relation: Form, edges: list[Edge], why: str) -> N
         remedy = f"put a resistor in series with {_quoted([p.element for p in pumps])}"
         return NetworkError(what, "network", "a current that is free", remedy)
     remedy = _separation(ports, word == MIXED or bool(couplings))
+    if laws.circuit.chains.keys() & {edge.placed.bank for edge in edges} and word != MIXED:
+        remedy = _store_between(ports[0])  # a resistor would depend on the cells, and they on it
     return NetworkError(what, "network", "independent storage and sources", remedy)
 
 

@@ -197,7 +197,7 @@ def test_a_run_is_a_point_at_its_end() -> None:
     assert linear.u[1] == 50.0
     assert linear.A[1, 1] == pytest.approx(-300.0 / 3.5e-3)
     assert linearize("piezo_stack", at=run.isel(time=3)).x[0] == run.q.values[3]
-    with pytest.raises(UsageError, match="linearize.at: this Dataset has no 'p', 'Q_C', 'phi'"):
+    with pytest.raises(UsageError, match="this Dataset has no 'p', 'Q_C', 'phi'"):
         linearize("piezo_stack", at=run[["q", "S"]])
     rest = operating_point("piezo_stack", inputs={"V_in": 50.0}, initial=run)
     assert rest.parameters["d"] == 300.0

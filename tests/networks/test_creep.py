@@ -8,7 +8,8 @@ of Maxwell side by side with a spring and a damper are one linear system, solved
 import numpy as np
 import pytest
 
-from piezo_sym import simulate
+from piezo_sym import derive, simulate
+from piezo_sym.errors import NetworkError
 from piezo_sym.proofs import Verdict
 from piezo_sym.spec.load import parse
 from piezo_sym.verification import process
@@ -99,3 +100,30 @@ def test_cells_of_maxwell_creep_as_their_eigenvalues_say():
 def test_creep_is_proved_for_any_number_of_cells(cells):
     report = process.examined(model(cells))
     assert {row.verdict for row in report.rows if row.required} == {Verdict.PROVED}
+
+
+@pytest.mark.parametrize(
+    ("beside", "said"),
+    [
+        (
+            'oil = { kind = "damper", between = ["tip", "wall"], force = "d*v", heats = "body" }',
+            "connect 'oil' to another node than 'tip': cells in series follow the force",
+        ),
+        (
+            'grip = { kind = "stop", between = ["tip", "wall"], stiffness = "k", limit = "F_c",'
+            ' heats = "body", state = "z" }\n[parameters.F_c]\nvalue = 1.0\nunit = "N"',
+            "connect 'grip' to another node than 'tip': cells in series follow the force",
+        ),
+        (
+            'head = { kind = "mass", at = "tip", mass = "m", state = "p" }\n'
+            '[parameters.m]\nvalue = 1.0\nunit = "kg"',
+            "put a spring between them",
+        ),
+    ],
+)
+def test_what_a_chain_cannot_bear_at_its_end_is_told_where_to_go(beside, said):
+    """A mass was advised in the first two cases, which the third refuses."""
+    more = beside + "\n" + KELVIN_VOIGT.format(count=3)
+    text = SPEC.format(k=4.0, d=1.0, d_c=1.0, F=1.0, more=more)
+    with pytest.raises(NetworkError, match=said):
+        derive(parse(text))

@@ -292,7 +292,7 @@ REFUSED = {
         R2 = { kind = "resistor", between = ["n", "gnd"], voltage = "rho*i**3", heats = "body" }
         C1 = { kind = "capacitor", between = ["c", "gnd"], capacitance = "C" }
         """,
-        "elements.R2: 'R1', 'R2' determine each other's flow; .*put a capacitor at the node",
+        "elements.R2: 'R1', 'R2' determine each other's flow; .*put a capacitor at node",
     ),
     "nine linear resistors in series across a capacitor": (
         """
