@@ -42,6 +42,8 @@ def generate(
     from piezo_sym.build import refuse_case, shipped_models
     from piezo_sym.spec.load import load
 
+    if every and not check:
+        raise UsageError("goes with --check alone", "--all", remedy="add --check, or leave it out")
     names = specs or []
     models = [load(spec) for spec in names] or list(shipped_models())
     called = [model.name for model in models]

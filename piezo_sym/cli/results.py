@@ -6,6 +6,7 @@ Input: the Dataset of a run, and a path.  Output: the files, replaced together.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -51,7 +52,7 @@ def _of_other_runs(path: Path, own: Mapping[str, Path]) -> Iterator[Path]:
     for file in sorted(path.parent.glob("*.csv")):
         name = file.stem.removeprefix(f"{path.stem}_")
         if name != file.stem and file not in own.values():
-            with file.open(encoding="utf-8", errors="replace") as lines:
+            with suppress(OSError), file.open(encoding="utf-8", errors="replace") as lines:
                 if lines.readline().startswith(f"{header_of(name, 's')},"):
                     yield file
 

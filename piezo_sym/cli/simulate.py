@@ -97,7 +97,7 @@ def simulate(
     first column, joined by straight lines, whose header may say units: t [ms],V_in [kV]. Of several
     columns the one named like the input counts.
     """
-    made = _check_out(out)
+    made = _check_out(out, continued)
     units = Units(spec)
     signals = dict(pairs(inputs or (), "--input", units.signal))
     starts = dict(pairs(initial or (), "--initial", units.initial))
@@ -197,8 +197,11 @@ def _start(path: Path | None, initial: Mapping[str, Any]) -> Any:
         raise FileError("is no run that can go on", path_text(path), remedy=remedy) from cause
 
 
-def _check_out(out: Path | None) -> list[str]:
+def _check_out(out: Path | None, continued: Path | None) -> list[str]:
     """Check where a result is to be written; return what is said of a folder that is made."""
+    if out is not None and continued is not None and out.resolve() == continued.resolve():
+        what = f"{path_text(out)} is what --continue goes on from, and would be lost"
+        raise UsageError(what, "--out", "another file")
     if out is not None and out.suffix not in ENDINGS:
         raise UsageError(f"{path_text(out)} has no known ending", "--out", listing(ENDINGS))
     if out is None or out.parent.exists():

@@ -51,7 +51,7 @@ from piezo_sym.proofs.shortening import (
 )
 from piezo_sym.proofs.signs.cases import summands
 from piezo_sym.proofs.signs.reduce import Positive
-from piezo_sym.spec.elements.ports import DissipativePort
+from piezo_sym.spec.elements.ports import DissipativePort, Storage
 from piezo_sym.spec.tables import condition_text
 
 #: What to write for a law that jumps, as the end of a reason.
@@ -142,14 +142,22 @@ def _broken(conditions: Iterable[Cmp], points: Iterable[Mapping[str, Value]]) ->
 
 
 def signed_roots(element: str, iphs: IPHS) -> str:
-    """Return what to write for a root of the letter, which has no value below 0, or ''."""
-    for placed, port in iphs.circuit.of(DissipativePort):
-        v = Sym(port.letter)
+    """Return what to write for a root of a letter or state, which has no value below 0, or ''."""
+    for placed, port in iphs.circuit.of(DissipativePort, Storage):
+        v = Sym(port.letter if isinstance(port, DissipativePort) else port.state)
         for root in walk(port.law) if placed.element == element else ():
             match root:
-                case Call("sqrt", (arg,)) if isinstance(reflected(arg, v.name), Neg):
-                    signed = mul(Call("sign", (v,)), replaced(root, {v: Call("abs", (v,))}))
-                    return f"; for both signs of {v.name}, {_instead(signed, root)}"
+                case Call("sqrt", (arg,)):
+                    base = arg
+                case Pow(arg, e) if e.denominator != 1:
+                    base = arg
+                case _:
+                    continue
+            if isinstance(reflected(base, v.name), Neg):
+                size = replaced(root, {v: Call("abs", (v,))})
+                flow = isinstance(port, DissipativePort)  # of a store, a factor such as 1 + abs(q)
+                signed = mul(Call("sign", (v,)), size) if flow else size
+                return f"; for both signs of {v.name}, {_instead(signed, root)}"
     return ""
 
 

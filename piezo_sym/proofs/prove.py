@@ -12,7 +12,7 @@ from itertools import product
 import sympy as sp
 
 from piezo_sym.expressions.text import spell
-from piezo_sym.expressions.tree import Cmp, names
+from piezo_sym.expressions.tree import ZERO, Cmp, names
 from piezo_sym.iphs import IPHS
 from piezo_sym.proofs.asked import DomainOracle, moved_counterexample, simple_counterexample
 from piezo_sym.proofs.assumptions import drive_of
@@ -245,7 +245,7 @@ def _of_derived(question: Question, found: Finding) -> Finding:
 def _mended_by(found: Finding, obligation: Obligation, iphs: IPHS, solver: SolverLike) -> str:
     """Return what mends a row, as the end of its reason: a condition, else the finding's remedy."""
     refuted, conditions = found.verdict is Verdict.REFUTED, ""
-    if refuted and obligation.sign:
+    if obligation.sign and (refuted or found.reason.endswith(LOOSE)):
         conditions = mending_conditions(
             obligation,
             obligation.sign,
@@ -279,4 +279,12 @@ def _domain_conditions(obligation: Obligation, iphs: IPHS, solver: SolverLike) -
     ties = drive_of(iphs, obligation.element)
     asked = neighbour_questions(obligation.questions, solver)
     questions = tuple(replace(q, where=(*ties, *q.where)) for q in asked)
-    return domain_conditions(questions, iphs, ties, lambda q: _failure(q, solver) is not None)
+    # a loop of resistors has a solution where each of their slopes is >= 0, which passivity asks
+    loops = iphs.junction.slopes if (obligation.id, obligation.element) == ("welldef", "") else ()
+    slopes = [Cmp(">=", slope.law, ZERO) for slope in loops]
+    signed = tuple(replace(q, original=claim) for q in questions for claim in slopes)
+    found = (
+        domain_conditions(tried, iphs, ties, lambda q: _failure(q, solver) is not None)
+        for tried in (signed, questions)
+    )
+    return next(filter(None, found), "")

@@ -234,4 +234,6 @@ def as_signal(value: object, where: str, start: float = 0.0) -> Signal:
     if callable(value) and not isinstance(unwrap(value), type):  # sine without its numbers
         return InputFunction(value, where, start)
     expected = "a number, (t, values), a function of t or a signal, such as sine(100.0, 50.0)"
-    raise UsageError(f"{quote(value)} is no input", where, expected)
+    labels = "index" if hasattr(value, "iloc") else "time"  # of pandas, and of xarray
+    remedy = f"give (x.{labels}, x.values)" if hasattr(value, "to_numpy") else ""
+    raise UsageError(f"{quote(value)} is no input", where, expected, remedy)

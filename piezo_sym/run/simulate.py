@@ -156,9 +156,9 @@ def simulate(
         `entropy_residual` = S - S(0) - entropy produced - entropy exchanged: round-off with the
         discrete gradient, the error of solver and quadrature with SciPy's. At a jump, inputs
         have their value after it, but at the end of the run their value before it. Attributes:
-        units, model, parameters; `method`, `rtol` or `step`, `order`, `engine` (its compiler, or
-        why there is none), the work (`accepted_steps`, `newton_iterations`, `halvings`: refused
-        steps; of SciPy `rhs_evaluations`).
+        `units` of each quantity; `model`, `parameter_<name>`, `method`, `rtol` or `step`, `order`,
+        `engine` (its compiler, or why there is none), the work (`accepted_steps`,
+        `newton_iterations`, `halvings`: refused steps; of SciPy `rhs_evaluations`).
 
     Raises
     ------

@@ -154,3 +154,7 @@ def test_models_whose_names_differ_only_by_case_are_refused(call, spec_file, tmp
         assert answer.err.count("\n") == 1
     assert [path.name for path in (tmp_path / "generated").iterdir()] == ["mine"]
     assert call("generate", first).code == 0
+
+
+def test_all_is_of_a_check(refused):
+    assert refused("generate", "oscillator", "--all").startswith("--all: goes with --check alone")

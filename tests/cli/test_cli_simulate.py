@@ -620,6 +620,28 @@ def test_events_are_printed_however_often_they_happen(call, event, hits):
     assert "q_at_hit" not in answer.out  # the file has what there was at these times
 
 
+def test_a_table_of_events_of_an_earlier_run_is_said(call, tmp_path):
+    out = tmp_path / "run.csv"
+    (tmp_path / "run_drive.csv").write_text("t [s],F\n0,1\n", encoding="utf-8")
+    assert call(*DRIVEN, "--event", "hit=q - 1e-9", "--out", out).err == ""
+    earlier = (tmp_path / "run_hit.csv").read_bytes()
+    said = f"piezo-sym: '{tmp_path / 'run_hit.csv'}' has events of an earlier run\n"
+    assert call(*DRIVEN, "--out", out).err == said
+    assert (tmp_path / "run_hit.csv").read_bytes() == earlier
+    assert call(*DRIVEN, "--event", "hit=q - 1e-9", "--out", out).err == ""
+
+
+def test_a_run_does_not_replace_what_it_goes_on_from(call, refused, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert call(*SHORT, "--out", "run.nc").code == 0
+    before = Path("run.nc").read_bytes()
+    said = refused(*SHORT, "--continue", "run.nc", "--out", tmp_path / "run.nc")
+    assert said.endswith(
+        "is what --continue goes on from, and would be lost; expected another file"
+    )
+    assert Path("run.nc").read_bytes() == before
+
+
 @pytest.mark.parametrize("ending", ["nc", "csv", "zarr"])
 def test_a_folder_that_is_made_is_said(call, tmp_path, ending):
     path = tmp_path / "new" / f"run.{ending}"

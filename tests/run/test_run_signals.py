@@ -1,9 +1,12 @@
 """Signals: values, corners, one-sided limits, and the refusals of their makers."""
 
+import re
 from math import inf, isinf, nan, pi
 
 import numpy as np
+import pandas
 import pytest
+import xarray
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -285,3 +288,14 @@ def test_the_last_sample_of_an_input_is_its_value_there(drive, end, method):
     inputs = {"V_in": drive} if end is not None else {"V_in": lambda t: drive(t - 0.3)}
     run = simulate("piezo_stack", inputs=inputs, duration=0.3, times=4, method=method)
     assert float(run.V_in[-1]) == (end if end is not None else pytest.approx(1 / 0.3))
+
+
+def test_labelled_samples_are_told_the_pair_to_give():
+    t = np.linspace(0.0, 0.01, 5)
+    for x, pair in (
+        (pandas.Series(t, index=t), "(x.index, x.values)"),
+        (xarray.DataArray(t, coords={"time": t}, dims="time"), "(x.time, x.values)"),
+    ):
+        with pytest.raises(UsageError, match=re.escape(f"; give {pair}")):
+            as_signal(x, "inputs.V")
+        assert as_signal(eval(pair, {"x": x}), "inputs.V")(0.005) == pytest.approx(0.005)
