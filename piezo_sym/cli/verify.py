@@ -101,6 +101,7 @@ def _reports(
                 reports[spec], files = report_and_files(model)
                 unused = [f"inputs.{name}: {UNUSED}" for name in unused_inputs(flat)]
                 bounds = {word for c in conditions(flat) for word in names(c.tree)}
+                bounds |= flat.parameters.keys() - model.parameters.keys()  # of components
                 idle = (name for name in unused_parameters(flat) if name not in bounds)
                 unused += [f"parameters.{name}: no law uses it" for name in idle]
                 for line in unused:

@@ -145,6 +145,14 @@ def test_a_parameter_without_effect_is_a_line(call, spec_file):
     assert "F_2" not in answer.out
 
 
+def test_a_parameter_of_a_component_is_not_a_line(call, tmp_path):
+    """What is left out of a component takes the effect of its parameters with it, on purpose."""
+    path = tmp_path / "pair.toml"
+    text = '[model]\nname = "pair"\n[components.one]\nspec = "oscillator"\n'
+    path.write_text(f'{text}without = ["damper", "body"]\n', encoding="utf-8")
+    assert call("verify", path).err == ""
+
+
 def test_an_input_without_effect_is_a_line(call, spec_file):
     spec = spec_file("[inputs]", '[inputs]\nV_3 = { unit = "kV" }\nS_0 = { unit = "J/K" }')
     text = spec.read_text(encoding="utf-8").replace("c_0*log(T_e/T_0)", "S_0 + c_0*log(T_e/T_0)")
