@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from piezo_sym.files import write_bytes
-from piezo_sym.run.sample_files import header_of
+from piezo_sym.run.text_tables import header_of
 
 #: Okabe and Ito's colours, which colour-blind readers can distinguish; dashes, for print in grey.
 COLOURS = ("#0072B2", "#009E73", "#E69F00", "#D55E00", "#CC79A7", "#56B4E9", "#000000", "#F0E442")

@@ -47,7 +47,7 @@ def tables(result: xarray.Dataset, path: Path) -> Mapping[str, Path]:
 
 def _of_other_runs(path: Path, own: Mapping[str, Path]) -> Iterator[Path]:
     """Yield the tables of events beside a .csv that are not its `own`."""
-    from piezo_sym.run.sample_files import header_of
+    from piezo_sym.run.text_tables import header_of
 
     for file in sorted(path.parent.glob("*.csv")):
         name = file.stem.removeprefix(f"{path.stem}_")
@@ -61,7 +61,7 @@ def columns(result: xarray.Dataset, over: str) -> Any:
     """Return what is `over` some times as a table: a column per quantity, for a bank per lane."""
     import pandas as pd
 
-    from piezo_sym.run.sample_files import header_of
+    from piezo_sym.run.text_tables import header_of
 
     series = {header_of(over, "s"): result[over].to_series()}
     for name, variable in result.data_vars.items():

@@ -75,7 +75,8 @@ def spelled(name: str) -> str:
 
 def samples(path: str, where: str) -> Any:
     """Return the samples in a delimited text file: its one column, or that named like the input."""
-    from piezo_sym.run.sample_files import column_headers, samples_from_csv
+    from piezo_sym.run.sample_files import samples_from_csv
+    from piezo_sym.run.text_tables import column_headers
 
     if not path:
         raise UsageError("'@' names no file", where, "@FILE.csv")

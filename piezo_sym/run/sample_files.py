@@ -3,12 +3,12 @@
 Input: a file whose header may name units, ``t [ms]``.  Output: a frozen `Samples`, in SI.
 """
 
-import csv
 import re
 import warnings
-from collections.abc import Collection, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Collection, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from itertools import islice
 from math import isfinite
 from os import PathLike
 from pathlib import Path
@@ -17,22 +17,26 @@ from typing import Any
 import numpy as np
 
 from piezo_sym.errors import FileError, PiezoError, UsageError, listing, nearest, quote
-from piezo_sym.files import near_file, path_of
+from piezo_sym.files import path_of
 from piezo_sym.run.checks import FloatArray
 from piezo_sym.run.samples import ZERO_CELSIUS, Samples, read_samples
+from piezo_sym.run.text_tables import (
+    COMMENTS,
+    TextTable,
+    column_headers,
+    is_number,
+    name_and_unit,
+    open_table,
+)
 
-DELIMITERS, COMMENTS = ",;\t", ("#", "%")
 #: The unit of temperature with an offset in headers.
 CELSIUS = "degC", "\N{DEGREE SIGN}C"
-HEADER = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]")  # a name and its unit, t [ms]
-OTHERWISE = re.compile(  # t (ms), t/ms
-    r"(?P<name>.*?)\s*(?:\((?P<unit>[^()]+)\)|/\s*(?P<over>[^/()]+))"
-)
 #: What stands between groups of digits: 1'000.
 GROUPS = re.compile(r"(?<=\d)[\s'_\N{RIGHT SINGLE QUOTATION MARK}](?=\d{3})")
 #: A number with a comma in place of the point; one that may be meant as thousands, 12,345.
 DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d*([eE][-+]?\d+)?")
 THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
+DOTTED = re.compile(r"[-+]?\d{1,3}(\.\d{3})+,\d+")  # 1.234,5
 LEAVE_OUT = "delete the line: samples are joined by straight lines"
 AT_ENTRY = re.compile(r"at entry (\d+)")
 #: Endings of names that are meant as units.
@@ -52,7 +56,9 @@ def samples_from_csv(
 
     Parameters
     ----------
-    path : the file, UTF-8.
+    path : the file, in UTF-8, UTF-16 with its mark, or Windows-1252. Lines that begin with # or %
+        are passed over above the header; where none follows, the last of them is the header. Units
+        may have a line of their own below it.
     column : header of the values, with or without its unit; may be left out when the file has two
         columns.
     time_column : header of the times; the first column when left out.
@@ -90,119 +96,41 @@ def samples_from_csv(
 
 def _lines(path: Path) -> list[int]:
     """Return the line of each row below the header; empty lines are none."""
-    with _open(path) as (_, _, rows):
-        return [line for line, row in enumerate(rows, start=2) if row]
-
-
-def header_of(name: object, unit: str) -> str:
-    """Return the header of a column as `samples_from_csv` reads it; unit "1" is left out."""
-    return f"{name}" if unit == "1" else f"{name} [{unit}]"
-
-
-def column_headers(path: str | PathLike[str]) -> list[tuple[str, str]]:
-    """Return the names and units in the header of a delimited text file; "" for no unit."""
-    with _open(Path(path)) as (header, _, _):
-        return header
-
-
-@contextmanager
-def _open(path: Path) -> Iterator[tuple[list[tuple[str, str]], str, Iterator[list[str]]]]:
-    """Yield header, delimiter and rows of a delimited text file; raise `FileError` otherwise."""
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            first = file.readline()
-            if not first:
-                raise FileError("is empty", str(path), "a header line, then numbers")
-            delimiter = max(DELIMITERS, key=first.count)
-            names = next(csv.reader([first], delimiter=delimiter, skipinitialspace=True))
-            fault, remedy = _header_fault(names)
-            if fault:
-                raise FileError(fault, str(path), "a header line, such as t [s],V_in [V]", remedy)
-            header = [_name_and_unit(name.strip()) for name in names]
-            rows = csv.reader(file, delimiter=delimiter, skipinitialspace=True)
-            yield header, delimiter, rows
-    except OSError as cause:
-        what = f"cannot be read: {cause.strerror}"
-        raise FileError(what, str(path), remedy=near_file(path)) from cause
-    except UnicodeDecodeError as cause:
-        raise FileError("is not text in UTF-8", str(path), remedy="save it as UTF-8") from cause
-
-
-def _header_fault(names: Sequence[str]) -> tuple[str, str]:
-    """Return why these cells are no header, if they are none, and what to do."""
-    if not names:
-        return "line 1 is empty", "delete empty lines at the beginning"
-    if (mark := names[0][:1]) in COMMENTS:
-        what = f"line 1 begins with {quote(mark)}"
-        return what, f"delete the {quote(mark)}, or the lines that begin with it"
-    if all(_is_number(name) for name in names):
-        return "line 1 has numbers where names are expected", ""
-    if len(names) == 1:
-        return "line 1 has one name", "separate times and values by a comma, semicolon or tab"
-    return "", ""
-
-
-def _name_and_unit(text: str) -> tuple[str, str]:
-    """Return the name and the unit in a header: t [ms]; t (ms) or t/ms, where ms is a unit."""
-    from piezo_sym.expressions.units import ASCII
-
-    if match := HEADER.fullmatch(text):
-        return match["name"], match["unit"].strip().translate(ASCII)
-    if match := OTHERWISE.fullmatch(text):
-        unit = (match["unit"] or match["over"]).strip()
-        if _is_unit(unit):
-            return match["name"], unit.translate(ASCII)
-    return text, ""
-
-
-def _is_unit(text: str) -> bool:
-    """Return whether a text is meant as a unit; also degC and non-ASCII units, refused later."""
-    from piezo_sym.expressions.units import parse_unit
-
-    try:
-        parse_unit(text)
-    except PiezoError as error:
-        return not text.isascii() or "offset" in error.what
-    return True
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+    with open_table(path) as table:
+        return [line for line, _ in table.numbered()]
 
 
 def _columns(path: Path, t: int, x: int) -> tuple[FloatArray, FloatArray]:
     """Return two columns as numbers; raise `FileError` at the first cell that is not a number."""
     import pandas
 
-    with _open(path) as (header, delimiter, rows), warnings.catch_warnings():
+    with open_table(path) as table, warnings.catch_warnings():
         warnings.simplefilter("error")
-        sign = _decimal_sign(path, delimiter, (t, x))
+        sign = _decimal_sign(path, table, (t, x))
         with suppress(ValueError, Warning):  # the loop below finds the place of the error
-            with path.open(encoding="utf-8-sig") as lines:  # pandas drops cells without header
-                if any(line.count(delimiter) >= len(header) for line in lines):
+            with path.open(encoding=table.encoding) as lines:  # pandas drops cells without header
+                below = islice(lines, table.above, None)
+                if any(line.count(table.delimiter) >= len(table.header) for line in below):
                     raise ValueError("cells without header")
             how: Any = {"index_col": False, "dtype": float, "na_filter": False, "usecols": [t, x]}
-            how |= {"sep": delimiter, "skipinitialspace": True, "encoding": "utf-8-sig"}
-            how |= {"decimal": sign}
-            table = pandas.read_csv(path, **how)
-            both = table.to_numpy()[:, [0, 1] if t < x else [1, 0]]
+            how |= {"sep": table.delimiter, "skipinitialspace": True, "encoding": table.encoding}
+            how |= {"decimal": sign, "skiprows": table.above, "header": None}
+            both = pandas.read_csv(path, **how).to_numpy()[:, [0, 1] if t < x else [1, 0]]
             if np.isfinite(both).all():
                 return both[:, 0], both[:, 1]
-        numbered = ((line, row) for line, row in enumerate(rows, start=2) if row)
-        cells = (_cell(row, n, path, line, header, sign) for line, row in numbered for n in (t, x))
+        found = table.numbered()
+        cells = (_cell(row, n, path, line, table, sign) for line, row in found for n in (t, x))
         both = np.fromiter(cells, dtype=float).reshape(-1, 2)
         return both[:, 0], both[:, 1]
 
 
-def _decimal_sign(path: Path, delimiter: str, columns: Collection[int]) -> str:
+def _decimal_sign(path: Path, table: TextTable, columns: Collection[int]) -> str:
     """Return the decimal sign of columns: a comma if a cell has one that groups no thousands."""
-    with path.open(encoding="utf-8-sig") as lines:
-        next(lines)
-        for cells in (line.split(delimiter) for line in lines if delimiter != "," and "," in line):
+    if table.delimiter == ",":
+        return "."
+    with path.open(encoding=table.encoding) as lines:
+        for line in islice(lines, table.above, None):
+            cells = line.split(table.delimiter) if "," in line else ()
             for cell in (cells[n].strip(' "\n') for n in columns if n < len(cells)):
                 if DECIMAL_COMMA.fullmatch(cell) and not THOUSANDS.fullmatch(cell):
                     return ","
@@ -239,7 +167,7 @@ def _refuse_suffix(name: str, unit: str, ends: Collection[str], where: str) -> N
 def _index_of(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> int:
     if not isinstance(wanted, str):
         raise UsageError(f"{quote(wanted)} is no header", where, "the text over a column")
-    name, wanted_unit = _name_and_unit(wanted.strip())
+    name, wanted_unit = name_and_unit(wanted.strip())
     names = [f"{name} [{unit}]" if wanted_unit and unit else name for name, unit in headers]
     wanted = f"{name} [{wanted_unit}]" if wanted_unit else wanted
     if wanted not in names:
@@ -250,7 +178,7 @@ def _index_of(headers: Sequence[tuple[str, str]], wanted: str, where: str) -> in
 
 
 def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> int:
-    others = [n for n in range(len(headers)) if n != t]
+    others = [n for n, (name, _) in enumerate(headers) if n != t and name]
     if len(others) != 1:
         names = [headers[n][0] for n in others]
         what = f"{len(others)} columns beside the times: {listing(names)}"
@@ -260,11 +188,9 @@ def _other_column(headers: Sequence[tuple[str, str]], t: int, path: object) -> i
     return others[0]
 
 
-def _cell(
-    row: Sequence[str], n: int, path: Path, line: int, header: Sequence[tuple[str, str]], sign: str
-) -> float:
+def _cell(row: Sequence[str], n: int, path: Path, line: int, table: TextTable, sign: str) -> float:
     """Return cell n of a row as a number; raise `FileError` otherwise."""
-    text = row[n].strip() if n < len(row) else ""
+    text, header = row[n].strip() if n < len(row) else "", table.header
     where = f"{path}, line {line}"
     if any(cell.strip() for cell in row[len(header) :]):
         remedy = "write decimals with a point, and a name for each column into line 1; "
@@ -276,12 +202,17 @@ def _cell(
         value = float(plain.replace("_", "x"))  # 1_0 is a number only in Python
     except ValueError as cause:
         what = f"{quote(text)} is not a number{column}"
-        remedy = "units go into the header: t [ms]" if line == 2 and text[:1].isalpha() else ""
-        remedy = "write decimals with a point" if _is_number(text.replace(",", ".")) else remedy
-        remedy = "write all decimals with one sign" * (sign == "," and _is_number(text)) or remedy
+        remedy = (
+            "units go into the header: t [ms]"
+            if line == table.above + 1 and text[:1].isalpha()
+            else ""
+        )
+        remedy = "write decimals with a point" if is_number(text.replace(",", ".")) else remedy
+        remedy = "write all decimals with one sign" * (sign == "," and is_number(text)) or remedy
         remedy = f"delete lines that begin with '{text[0]}'" if text[:1] in COMMENTS else remedy
         plain = GROUPS.sub("", text)
-        remedy = f"write {plain}" if plain != text and _is_number(plain) else remedy
+        plain = text.replace(".", "").replace(",", ".") if DOTTED.fullmatch(text) else plain
+        remedy = f"write {plain}" if plain != text and is_number(plain) else remedy
         remedy = remedy if text else LEAVE_OUT
         raise FileError(what, where, "a number like 1.5e-3", remedy) from cause
     if not isfinite(value):

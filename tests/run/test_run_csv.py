@@ -37,13 +37,16 @@ def test_columns_by_name(write):
     ("text", "more", "kind", "words"),
     [
         ("", {}, FileError, "is empty; expected a header"),
-        (b"t,V\n0,\xff\n", {}, FileError, "is not text in UTF-8"),
+        (b"t,V\n0,\xff\n", {}, FileError, "line 2: '\xff' is not a number (column 'V')"),
+        (b"t,V\n0,\x81\n", {}, FileError, "is not text in UTF-8"),
         ("t,V\n0,1\n1,x\n", {}, FileError, "line 3: 'x' is not a number (column 'V')"),
         ("t;V\n0;1\n1;2,500\n", {}, FileError, "; write decimals with a point"),
         ("t;V\n0;1\n1;2\n", {"column": "t"}, UsageError, "column 't' has the times; expected a"),
         ("t,V\n0,1\n# x,2\n", {}, FileError, "delete lines that begin with '#'"),
-        ("# t,V\n0,1\n1,2\n", {}, FileError, "line 1 begins with '#'; expected a header line"),
-        ("% t,V\n0,1\n1,2\n", {}, FileError, "delete the '%', or the lines that begin with it"),
+        ("# a,b\n# c\n0,1\n1,2\n", {}, FileError, "line 2 has one name; expected a header line"),
+        ("# a\nt,V\n0,1\n1,x\n", {}, FileError, "line 4: 'x' is not a number (column 'V')"),
+        ("t,V\ns,V\n0,1\n0.5,x\n", {}, FileError, "line 4: 'x' is not a number (column 'V')"),
+        ("t;V\n0;1\n1;1.234,5\n", {}, FileError, "expected a number like 1.5e-3; write 1234.5"),
         ("t,V\n0,1\n% x,2\n", {}, FileError, "delete lines that begin with '%'"),
         ("t,V\n\n0,1\n\n2,1\n1,1\n", {}, UsageError, "time 1 in line 6 follows 2"),
         ("\nt,V\n0,1\n1,2\n", {}, FileError, "line 1 is empty; expected a header line"),
@@ -81,7 +84,7 @@ def test_columns_by_name(write):
         ("t [mm],V\n0,1\n1,1\n", {}, UsageError, "'t' is in mm; expected a time, such as in s"),
         ("t [ms],V [vlot]\n0,1\n1,1\n", {}, UsageError, "header: unknown unit 'vlot'"),
         ("0,1\n1,2\n2,3\n", {}, FileError, "line 1 has numbers where names are expected"),
-        ("t,V\nms,V\n0,1\n", {}, FileError, "units go into the header: t [ms]"),
+        ("t,V\nms,some\n0,1\n", {}, FileError, "units go into the header: t [ms]"),
         ("t (degC),T (K)\n0,1\n1,1\n", {}, UsageError, "unit 'degC' has an offset"),
         ("t,V [V],V [A]\n0,1,2\n", {"column": "V"}, UsageError, "two columns are named 'V'"),
     ],
@@ -122,6 +125,27 @@ def test_units_of_the_header_are_converted(write):
 @pytest.mark.parametrize("header", ["t (ms),V (kV)", "t/ms,V/kV", "t / ms,V / kV", "t [ms],V [kV]"])
 def test_headers_of_instruments_say_units_in_their_ways(write, header):
     signal = samples_from_csv(write(header + "\n0,1\n20,2\n"), column="V")
+    assert np.allclose(signal.times, [0, 0.02], rtol=1e-15)
+    assert np.allclose(signal.values, [1e3, 2e3], rtol=1e-15)
+    assert (signal.unit, signal.assumed) == ("V", "")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# Oscilloscope\n# 2026-01-01, channel 1\nt [ms],V [kV]\n0,1\n20,2\n",
+        "# t [ms],V [kV]\n0,1\n20,2\n",
+        "% made by hand\n% t/ms\tV/kV\n0\t1\n20\t2\n",
+        "t,V\nms,kV\n0,1\n20,2\n",
+        "t;V\n[ms];[kV]\n0,0;1,0\n20,0;2,0\n",
+        "# a, b, c\nt,V\n(ms),(kV)\n\n0,1\n20,2\n",
+        "t [ms],V [kV],\n0,1,\n20,2,\n",
+        "t [ms],V [kV]\n0,1\n20,2\n".encode("utf-16"),
+        "t [ms];V [kV];\xb5\n0;1;2\n20;2;3\n".encode("cp1252"),
+    ],
+)
+def test_files_of_instruments_are_read_as_they_are(write, text):
+    signal = samples_from_csv(write(text), column="V")
     assert np.allclose(signal.times, [0, 0.02], rtol=1e-15)
     assert np.allclose(signal.values, [1e3, 2e3], rtol=1e-15)
     assert (signal.unit, signal.assumed) == ("V", "")
