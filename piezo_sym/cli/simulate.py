@@ -114,8 +114,8 @@ def simulate(
         **span,
         **solver,
     )
-    aliased = _aliased(signals, result) if out else ()  # printed are the last values alone
-    _report(result, [*units.assumed, *_assumed(signals), *made, *aliased], out)
+    unmet = [f"stop: {stop} never holds"] if stop and "stopped" not in result.attrs else ()
+    _report(result, [*units.assumed, *_assumed(signals), *made, *unmet], out, signals)
 
 
 def _run(spec: str, out: Path | None, **options: Any) -> xarray.Dataset:
@@ -154,7 +154,9 @@ def _aliased(signals: Mapping[str, Any], result: xarray.Dataset) -> Iterator[str
             yield f"{text}; --times {math.ceil(SHOWN * frequency * span) + 1} show it"
 
 
-def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) -> None:
+def _report(
+    result: xarray.Dataset, said: Iterable[str], out: Path | None, signals: Mapping[str, Any]
+) -> None:
     """Write a result, then print it, so that a closed pipe does not lose it."""
     if out is not None and not _is_store(out):
         write(result, out)
@@ -163,7 +165,8 @@ def _report(result: xarray.Dataset, assumed: Iterable[str], out: Path | None) ->
         typer.echo(line)
     if "stopped" in result.attrs:
         typer.echo(f"stopped: {result.attrs['stopped']}")
-    for line in assumed:
+    aliased = _aliased(signals, result) if out else ()  # printed are the last values alone
+    for line in (*said, *aliased):
         typer.echo(line)
     if out is not None:
         _, *others = tables(result, out).values() if out.suffix == ".csv" else (out,)

@@ -620,6 +620,11 @@ def test_events_are_printed_however_often_they_happen(call, event, hits):
     assert "q_at_hit" not in answer.out  # the file has what there was at these times
 
 
+def test_a_stop_that_is_never_met_is_said(call):
+    assert "stop: q > 5 never holds" in call(*DRIVEN, "--stop", "q > 5").out.splitlines()
+    assert "never holds" not in call(*DRIVEN, "--stop", "q > 1e-9").out
+
+
 def test_a_table_of_events_of_an_earlier_run_is_said(call, tmp_path):
     out = tmp_path / "run.csv"
     (tmp_path / "run_drive.csv").write_text("t [s],F\n0,1\n", encoding="utf-8")
