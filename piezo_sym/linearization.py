@@ -32,7 +32,14 @@ from piezo_sym.modules import module_of
 from piezo_sym.run.checks import FloatArray, calling, checked_call, known_keys
 from piezo_sym.run.guard import stop_rows
 from piezo_sym.run.module import GeneratedModule, row_names
-from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters, start_of
+from piezo_sym.run.parameters import (
+    LaneValue,
+    Start,
+    at_end,
+    read_initial,
+    read_parameters,
+    start_of,
+)
 from piezo_sym.spec.load import load
 from piezo_sym.spec.model import Model
 
@@ -96,7 +103,7 @@ class LinearModel:
 def linearize(
     model: str | Path | Model,
     *,
-    at: OperatingPoint | Mapping[str, LaneValue] | Any = None,
+    at: "OperatingPoint | Start | None" = None,
     inputs: Mapping[str, float] | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
 ) -> LinearModel:
@@ -127,20 +134,16 @@ def linearize(
     module: Any = module_of(model)
     if at is None:
         at = operating_point(module, inputs=inputs, parameters=parameters)
+    initial: Any = at
     if isinstance(at, OperatingPoint):
         initial, parameters = at.initial, at.parameters if parameters is None else parameters
-        changed: Any = known_keys(inputs, at.inputs, f"{WHERE}.inputs")
-        inputs = {**at.inputs, **changed}
+        given: Any = known_keys(inputs, at.inputs, f"{WHERE}.inputs")
+        inputs = {**at.inputs, **given}
     elif hasattr(at, "data_vars"):
-        run: Any = at
-        _, given, parameters = start_of(module, None, run, parameters)
-        initial = given or {}
-        last = run.isel(time=-1) if run.time.ndim else run
-        own = (record.name for record in module.INPUTS if record.name in last.data_vars)
-        inputs = {name: float(last[name]) for name in own} | dict(inputs or {})
-    elif isinstance(at, Mapping):
-        initial = at
-    else:
+        _, initial, parameters = start_of(module, None, at, parameters)
+        own = [r.name for r in module.INPUTS if r.name not in (inputs or {})]
+        inputs = {**at_end(at, own), **(inputs or {})}
+    elif not isinstance(at, Mapping):
         expected = "an OperatingPoint, a run, or state -> value"
         raise UsageError(f"{quote(at)} is no state", f"{WHERE}.at", expected)
     p = read_parameters(module, parameters)

@@ -26,7 +26,7 @@ from piezo_sym.run.checks import FloatArray, calling, known_keys, number
 from piezo_sym.run.guard import check_start, stop_rows
 from piezo_sym.run.inputs import read_inputs
 from piezo_sym.run.module import GeneratedModule, by_name, checked, names_elsewhere, row_name
-from piezo_sym.run.parameters import LaneValue, read_initial, read_parameters, start_of
+from piezo_sym.run.parameters import LaneValue, Start, read_initial, read_parameters, start_of
 from piezo_sym.run.system import DrivenModule
 
 WHERE = "operating_point"
@@ -101,7 +101,7 @@ def operating_point(
     inputs: Mapping[str, float] | None = None,
     temperatures: Mapping[str, float] | None = None,
     parameters: Mapping[str, LaneValue] | None = None,
-    initial: Mapping[str, LaneValue] | Any = None,
+    initial: "Start | None" = None,
 ) -> OperatingPoint:
     """Return the state of rest under constant inputs that a run from the initial state approaches.
 
@@ -115,7 +115,8 @@ def operating_point(
         `piezo_sym.analysis`, a generated module.
     inputs : name -> number, SI units; the others have their defaults.
     temperatures : body -> temperature [K] at which it is held; the other bodies are free.
-    parameters, initial : as for `simulate`; the search begins at `initial`.
+    parameters, initial : as for `simulate`; the search begins at `initial`. Of a run (Dataset) they
+        are its parameters and its end, but not its inputs.
 
     Notes
     -----

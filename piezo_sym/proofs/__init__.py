@@ -1,7 +1,7 @@
 """Proofs: obligations on an `IPHS`, and verdicts on them.
 
 stage          from -> to                in
-obligations    IPHS -> Obligation        domain, bodies, balances, laws, continuity
+obligations    IPHS -> Obligation        assumptions, domain, bodies, balances, laws, continuity
 queries        Question -> Query         obligations, branches, rational, query
 answers        Query -> Answer           solvers, in processes of their own (worker)
 verdicts       Obligation -> Row         prove; sign_analysis and signs; witnesses by exact_eval

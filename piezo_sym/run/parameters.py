@@ -193,17 +193,23 @@ def start_of(
         remedy = "give the run's own spec, and changed values as parameters (--set); "
         remedy += "of a spec whose laws have changed, give each state in 'initial' (--initial)"
         raise UsageError(what, WHERE, expected, remedy if model == module.NAME else "")
-    if missing := [record.name for record in module.STATES if record.name not in run.data_vars]:
-        what = f"this Dataset has no {listing(map(repr, missing))}"
-        raise UsageError(what, WHERE, "a run with all states")
-    last = run.isel(time=-1) if run.time.ndim else run  # of one instant
-    state: dict[str, Any] = {record.name: last[record.name].values for record in module.STATES}
+    state = at_end(run, [record.name for record in module.STATES])
     used: dict[str, Any] = {}
     for name, value in run.attrs.items():
         if str(name).startswith(PARAMETER):
             key = str(name).removeprefix(PARAMETER)
             used[key] = int(value) if key.endswith("_count") else np.asarray(value).tolist()
-    return float(last.time) if start is None else start, state, {**used, **(parameters or {})}
+    end = float(run.time.values.flat[-1])
+    return end if start is None else start, state, {**used, **(parameters or {})}
+
+
+def at_end(run: Any, names: Sequence[str]) -> dict[str, Any]:
+    """Return quantities at the last instant of a run; raise `UsageError` if it lacks one."""
+    if missing := [name for name in names if name not in run.data_vars]:
+        what = f"this Dataset has no {listing(map(repr, missing))}"
+        raise UsageError(what, WHERE, "a whole run")
+    last = run.isel(time=-1) if run.time.ndim else run  # of one instant
+    return {name: last[name].values for name in names}
 
 
 def set_temperature(

@@ -46,7 +46,7 @@ def _power(q: Exponent, base: Value) -> Value:
     if root:
         rest, even = _even(rest, q)
         made = made * even
-        _needs("nonnegative", rest)
+        _needs("nonnegative", rest if sign(Value(field, {common: 1})) == 2 else base)
     for factor, times in ([(rest, 1)] if rest != field.one else []) if root else factors(rest):
         made = made * _generated(factor, times * q)
         if q < 0:

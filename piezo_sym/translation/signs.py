@@ -58,8 +58,8 @@ def _sign(value: Value) -> int:
     found = [_sign_of_term(value.field, mono, c) for mono, c in value.terms.items()]
     if min(found) > 0:
         return max(found)
-    rest = primitive(value, partly=True)[2] if len(value.terms) > 1 else value
-    return value.field.assumed.get(rest, 0)
+    _, common, rest = primitive(value, partly=True)
+    return min(value.field.assumed.get(rest, 0), _sign_of_term(value.field, common, 1))
 
 
 def _sign_of_term(field: GeneratorField, mono: Mono, c: Exponent) -> int:
@@ -119,7 +119,9 @@ def assume(value: Value, known: int) -> None:
     field.signs.clear()
     field.forms.clear()
     if value.constant is None:
-        rest = primitive(value, partly=True)[2]
+        size, common, rest = primitive(value, partly=True)
+        if known < 2 and _sign_of_term(field, common, 1) < 2:  # rest may be < 0
+            rest = value * field.number(1 / size)
         field.assumed[rest] = max(known, field.assumed.get(rest, 0))
         for g in rest.generators():  # if the value is a mere name, mark the name itself
             if rest == field.raised(g, 1) and field.gens[g].kind == "name":
@@ -130,7 +132,8 @@ def primitive(value: Value, *, partly: bool) -> tuple[Fraction, Mono, Value]:
     """Return (number, common factors, rest) of a value; the leading coefficient of rest is 1 or -1.
 
     With `partly`, only positive factors (or factors >= 0 with a positive exponent) are taken out.
-    A factor with a fractional exponent is one: where the root of it exists, it is >= 0.
+    A factor with a fractional exponent is one: where the root of it exists, it is >= 0.  The rest
+    has the sign of the value where these factors are not 0, and any sign where one is.
     """
     field, least = value.field, dict[int, Exponent]()
     monos = [dict(mono) for mono in value.terms]

@@ -197,7 +197,11 @@ def test_a_run_is_a_point_at_its_end() -> None:
     assert linear.u[1] == 50.0
     assert linear.A[1, 1] == pytest.approx(-300.0 / 3.5e-3)
     assert linearize("piezo_stack", at=run.isel(time=3)).x[0] == run.q.values[3]
-    with pytest.raises(UsageError, match="this Dataset has no 'p', 'Q_C', 'phi'"):
+    with pytest.raises(UsageError, match=r"linearize\.at: this Dataset has no 'p', 'Q_C'"):
         linearize("piezo_stack", at=run[["q", "S"]])
+    with pytest.raises(UsageError, match=r"linearize\.at: this Dataset has no 'V_in', 'T_e'"):
+        linearize("piezo_stack", at=run.drop_vars(["V_in", "T_e"]))
+    given = {"V_in": 60.0, "T_e": 300.0}
+    assert linearize("piezo_stack", at=run.drop_vars([*given]), inputs=given).u[1] == 60.0
     rest = operating_point("piezo_stack", inputs={"V_in": 50.0}, initial=run)
     assert rest.parameters["d"] == 300.0

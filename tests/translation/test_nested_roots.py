@@ -51,3 +51,54 @@ def test_no_mutant_of_a_root_of_a_root_is_proved(language):
     made = [one for one in mutants(text) if int(one[0].split()[1]) in lines]
     assert len(made) > 10
     assert [what for what, new in made if verdict(known, language, new) is Verdict.PROVED] == []
+
+
+CHOICE = """
+[model]
+name = "chosen"
+[parameters]
+m = {{ value = 1.0, unit = "kg" }}
+d = {{ value = 1.0, unit = "N*s/m" }}
+h = {{ value = 2.0, unit = "1" }}
+p = {{ value = 1.0, unit = "1" }}
+r = {{ value = 1.0, unit = "1" }}
+T_0 = {{ value = 300.0, unit = "K" }}
+c = {{ value = 1.0, unit = "J/K" }}
+[domain]
+assume = ["d >= 0", "{first}", "{second}"]
+[elements]
+mass   = {{ kind = "mass", at = "a", mass = "m", state = "p_a" }}
+damper = {{ kind = "damper", between = ["a", "wall"], force = "{law}", heats = "body" }}
+body   = {{ kind = "thermal_mass", temperature = "T_0*exp(S/c)", state = "S" }}
+"""
+#: Factors that may be 0, each with the condition under which it is a value >= 0.
+ZEROS = [
+    ("r", "r >= 0"),
+    ("sqrt(r)", "r >= 0"),
+    ("sqrt(p - r)", "p >= r"),
+    ("sqrt((p - r)**2)", "p >= 0"),
+]
+
+
+def not_proved(first, second, law, test, others):
+    """Show that a NumPy text is proved, and not with others in place of a comparison in it."""
+    iphs = derive(parse(CHOICE.format(first=first, second=second, law=law)))
+    text, known = printed(iphs)["NumPy"], Reference(iphs)
+    test = test.replace("sqrt", "np.sqrt")
+    assert test in text
+    assert verdict(known, "NumPy", text) is Verdict.PROVED
+    for other in others:
+        assert verdict(known, "NumPy", text.replace(test, other)) is not Verdict.PROVED, other
+
+
+@pytest.mark.parametrize(("factor", "condition"), ZEROS)
+def test_a_product_is_not_positive_where_a_factor_is_0(factor, condition):
+    """It was taken for positive where the rest of it is, and comparisons with 0 for true."""
+    test = f"{factor}*(h - 1) > 0"
+    not_proved(condition, "h > 1", f"d*v if {test} else 2*d*v", test, ["h - 1 > 0", "h > 0"])
+
+
+@pytest.mark.parametrize(("factor", "condition"), ZEROS[:3])
+def test_a_product_that_is_assumed_says_nothing_where_a_factor_is_0(factor, condition):
+    law = "d*v if h - 1 >= 0 else 2*d*v"
+    not_proved(condition, f"{factor}*(h - 1) >= 0", law, "h - 1 >= 0", ["h**2 >= 0"])
