@@ -224,6 +224,7 @@ def _narrow(system: DrivenModule, brackets: list[_Brackets], run: Sampler) -> li
         each = [(bracket, bracket.samples()) for bracket in brackets]
         if not any(bracket.inside(times).any() for bracket, times in each):
             break
+        # a run before got as far as the last of them, so all are reached
         at = np.unique(np.concatenate([times.ravel() for _, times in each]))
         _, seen = run(at, at_last(at))
         brackets = [

@@ -108,6 +108,12 @@ def test_a_root_has_a_slope_at_a_kink_or_says_that_it_has_none(
         assert linear.A[p, p] == slope
 
 
+def test_a_slope_without_bound_is_seen_beside_large_forces() -> None:
+    model = parse(TEXT.format(law="d*v*(1 + (abs(v - v_0)/v_0)**(1/3))", unit="N*s/m"))
+    with pytest.raises(RunError, match="no derivative there"):
+        linearize(model, at={"p": 0.1, "q": 1e6})
+
+
 def test_what_has_no_linear_model_says_so() -> None:
     with pytest.raises(UsageError, match="is no state"):
         linearize("piezo_stack", at=3)  # type: ignore[arg-type]
