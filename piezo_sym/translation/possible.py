@@ -11,9 +11,10 @@ from piezo_sym.expressions.calculus import add, mul, power
 from piezo_sym.expressions.functions import RECORDS, LawFunction
 from piezo_sym.expressions.tree import ONE, ZERO, Cmp, Expr, Num, Sym
 from piezo_sym.proofs.query import query
+from piezo_sym.proofs.rational import Clause
 from piezo_sym.proofs.solvers import solver
 from piezo_sym.translation.field import Exponent, GeneratorField, Value
-from piezo_sym.translation.signs import sign_of
+from piezo_sym.translation.signs import sign, sign_of
 
 MOST_ASKED = 60
 MOST_UNKNOWN = 3
@@ -43,26 +44,32 @@ def _impossible(sides: Mapping[Value, int]) -> bool:
     signed = {p for value in values for mono in value.terms for p in mono}
     inner = (field.gens[g].arg for g, _ in tuple(signed))
     signed |= {p for arg in inner if arg for mono in arg.terms for p in mono}
-    given += [c for p in sorted(signed) for c in _of_generator(field, p)]
-    asked = query("", (), [(part,) for part in given], Cmp("<", ZERO, ZERO))
+    clauses: list[Clause] = [(part,) for part in given]
+    clauses += [c for p in sorted(signed) for c in _of_generator(field, p)]
+    asked = query("", (), clauses, Cmp("<", ZERO, ZERO))
     result = solver("z3", PATIENCE).ask(asked).result
     field.unknown += result == "unknown"
     return result == "unsat"
 
 
-def _of_generator(field: GeneratorField, part: tuple[int, Exponent]) -> Iterator[Cmp]:
-    """Yield facts on a power of a generator: its sign, a root's square, bounds of functions."""
-    sign, gen, symbol = sign_of(field, part[0]), field.gens[part[0]], _symbol(part)
-    if sign:
-        yield Cmp(">" if sign == 2 else ">=", symbol, ZERO)
+def _of_generator(field: GeneratorField, part: tuple[int, Exponent]) -> Iterator[Clause]:
+    """Yield facts on a power of a generator: its sign, a root's square, bounds of functions.
+
+    The root of a factor may stand where that of the product is meant, which is 0 where another
+    factor is: only the magnitude of such a factor is known to be the square of its root.
+    """
+    known, gen, symbol = sign_of(field, part[0]), field.gens[part[0]], _symbol(part)
+    if known:
+        yield (Cmp(">" if known == 2 else ">=", symbol, ZERO),)
     if gen.arg is None or len(gen.arg.terms) > MOST_TERMS:
         return
     arg = _tree(gen.arg)
     if gen.kind == "power" and part[1] == Fraction(1, 2):
-        yield Cmp(">=", symbol, ZERO)
-        yield Cmp("=", power(symbol, Fraction(2)), arg)
+        yield (Cmp(">=", symbol, ZERO),)
+        sides = (arg,) if sign(gen.arg) else (arg, _tree(-gen.arg))
+        yield tuple(Cmp("=", power(symbol, Fraction(2)), side) for side in sides)
     if gen.kind in RECORDS and part[1] == 1:
-        yield from _of_function(RECORDS[gen.kind], arg, symbol)
+        yield from ((fact,) for fact in _of_function(RECORDS[gen.kind], arg, symbol))
 
 
 def _of_function(record: LawFunction, arg: Expr, value: Expr) -> Iterator[Cmp]:

@@ -1,5 +1,7 @@
 """A root of a root is one root, also of a difference of states, of which no sign is known."""
 
+import re
+
 import pytest
 
 from piezo_sym import derive
@@ -102,3 +104,32 @@ def test_a_product_is_not_positive_where_a_factor_is_0(factor, condition):
 def test_a_product_that_is_assumed_says_nothing_where_a_factor_is_0(factor, condition):
     law = "d*v if h - 1 >= 0 else 2*d*v"
     not_proved(condition, f"{factor}*(h - 1) >= 0", law, "h - 1 >= 0", ["h**2 >= 0"])
+
+
+#: Conditions, a law, and a comparison that is false where a factor of the radicand is 0.
+RADICANDS = [
+    (
+        ("r >= 0", "r*(p - h) >= 0"),
+        "(d*v if p >= h else 2*d*v) if sqrt(r*(p - h)) <= 0 else 3*d*v",
+    ),
+    (("r >= 0", "sqrt(r*(p - h)) <= 1"), "d*v if p >= h else 2*d*v"),
+    (("r >= 0", "sqrt(h**2*p) <= 1"), "d*v if p >= 0 else 2*d*v"),
+    (("r >= 0", "sqrt(sqrt(r)*(p - h)) <= 1"), "d*v if p >= h else 2*d*v"),
+    (("r >= 0", "sqrt(sqrt(r - h)*(p - h)) <= 1"), "d*v if p >= h else 2*d*v"),
+    (
+        ("r > -1", "sqrt(h**2 + r**2)*(p - h) >= 0"),
+        "(d*v if p >= h else 2*d*v) if sqrt(sqrt(h**2 + r**2)*(p - h)) <= 1 else 3*d*v",
+    ),
+]
+
+
+@pytest.mark.parametrize(("conditions", "law"), RADICANDS)
+def test_a_radicand_says_nothing_of_a_factor_where_another_is_0(conditions, law):
+    """The root of a product is 0 where one factor is, and the other may be negative there."""
+    text = CHOICE.format(first=conditions[0], second=conditions[1], law=law)
+    text = text.replace("h = { value = 2.0", "h = { value = 0.5")
+    iphs = derive(parse(text))
+    text, known = printed(iphs)["NumPy"], Reference(iphs)
+    test = re.search(r"p >= \w", text)[0]
+    assert verdict(known, "NumPy", text) is not Verdict.REFUTED
+    assert verdict(known, "NumPy", text.replace(test, "p**2 >= 0")) is not Verdict.PROVED
