@@ -105,7 +105,8 @@ def _header(lines: Sequence[str], path: Path) -> tuple[list[tuple[str, str]], st
     header = [name_and_unit(name) for name in names]
     units = [text.strip("[]()") for text in _cells(left[1], delimiter)] if left[1:] else []
     plain = len(units) == len(names) and not any(unit for _, unit in header)
-    if plain and all(_is_unit(unit) and not is_number(unit) for unit in units):
+    named = [unit for name, unit in zip(names, units, strict=False) if name]
+    if plain and all(_is_unit(unit) and not is_number(unit) for unit in named):
         header = [(name, _ascii(unit)) for name, unit in zip(names, units, strict=True)]
         above += 1
     return header, delimiter, above + 1

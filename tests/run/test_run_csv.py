@@ -140,6 +140,7 @@ def test_headers_of_instruments_say_units_in_their_ways(write, header):
         "t;V\n[ms];[kV]\n0,0;1,0\n20,0;2,0\n",
         "# a, b, c\nt,V\n(ms),(kV)\n\n0,1\n20,2\n",
         "t [ms],V [kV],\n0,1,\n20,2,\n",
+        "t,V,\nms,kV,\n0,1,\n20,2,\n",
         "t [ms],V [kV]\n0,1\n20,2\n".encode("utf-16"),
         "t [ms];V [kV];\xb5\n0;1;2\n20;2;3\n".encode("cp1252"),
     ],
