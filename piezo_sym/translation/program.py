@@ -24,6 +24,7 @@ from piezo_sym.translation.numpy_head import numpy_functions
 from piezo_sym.translation.numpy_reader import read_numpy
 from piezo_sym.translation.reference import proved
 from piezo_sym.translation.signs import compare, factors, reading
+from piezo_sym.translation.split_roots import has_split_roots
 from piezo_sym.translation.witness import witness
 from piezo_sym.translation.zero import Edges, edges_of, is_zero
 
@@ -143,8 +144,10 @@ def _label(key: Key, n: int, known: Proved) -> str:
 
 def _unmet(needs: tuple[Need, ...], known: Proved) -> Iterator[str]:
     """Yield a reason for each divisor, or argument of a root, that only printed code has."""
-    field, allowed = known.field, dict[Value, list[Need]]()
+    field, allowed, split = known.field, dict[Value, list[Need]](), has_split_roots(known)
     for given in known.needs:
+        if split and given.kind == "nonnegative" and not given.outside:
+            continue  # it may be that of a factor alone
         allowed.setdefault(given.value, []).append(given)
         for factor, _ in factors(given.value) if given.kind == "nonzero" else ():
             allowed.setdefault(factor, []).append(given)  # a nonzero product has nonzero factors

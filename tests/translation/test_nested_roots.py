@@ -133,3 +133,24 @@ def test_a_radicand_says_nothing_of_a_factor_where_another_is_0(conditions, law)
     test = re.search(r"p >= \w", text)[0]
     assert verdict(known, "NumPy", text) is not Verdict.REFUTED
     assert verdict(known, "NumPy", text.replace(test, "p**2 >= 0")) is not Verdict.PROVED
+
+
+#: Conditions, the factor of a law, and a text that is nan at a point where the factor is 0.
+SPLIT = [
+    (("r >= 0", "r*(p - h) >= 0"), "sqrt(r*(p - h))", "sqrt(r)*sqrt(p - h)"),
+    (("r >= 0", "h**2*p >= 0"), "sqrt(h**2*p)", "abs(h)*sqrt(p)"),
+    (("r >= 0", "sqrt(r)*(p - h) >= 0"), "sqrt(sqrt(r)*(p - h))", "r**(1/4)*sqrt(p - h)"),
+    (("r >= 0", "r*(p - h) >= 0"), "sqrt(r*(p - h))", "(r**2)**(1/4)*sqrt(p - h)"),
+]
+
+
+@pytest.mark.parametrize(("conditions", "factor", "other"), SPLIT)
+def test_the_root_of_a_product_is_no_product_of_roots_where_a_factor_is_0(
+    conditions, factor, other
+):
+    text = CHOICE.format(first=conditions[0], second=conditions[1], law=f"d*v*{factor}")
+    iphs = derive(parse(text.replace("h = { value = 2.0", "h = { value = 0.5")))
+    text, known = printed(iphs)["NumPy"], Reference(iphs)
+    old, new = (re.sub("sqrt|abs", r"np.\g<0>", part) for part in (factor, other))
+    assert old in text
+    assert verdict(known, "NumPy", text.replace(old, new)) is not Verdict.PROVED
